@@ -1,0 +1,32 @@
+# One target a folder. Include root is the repository; what a folder may link is what it may include.
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(footlight_flags INTERFACE)
+target_include_directories(footlight_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(footlight_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -fstack-protector-strong -ffp-contract=off
+  $<$<BOOL:${FOOTLIGHT_WERROR}>:-Werror>
+  $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+if(FOOTLIGHT_SANITIZE)
+  target_compile_options(footlight_flags INTERFACE -fsanitize=${FOOTLIGHT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(footlight_flags INTERFACE -fsanitize=${FOOTLIGHT_SANITIZE})
+endif()
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+target_link_options(footlight_flags INTERFACE -Wl,-z,relro,-z,now)
+
+# footlight_library(NAME sources... ) makes footlight_NAME.
+function(footlight_library name)
+  add_library(footlight_${name} STATIC ${ARGN})
+  target_link_libraries(footlight_${name} PUBLIC footlight_flags)
+endfunction()
+
+# footlight_test(NAME sources...) makes NAME_tests, one program a folder, run by ctest as one test.
+function(footlight_test name)
+  add_executable(${name}_tests ${ARGN})
+  target_link_libraries(${name}_tests PRIVATE footlight_flags GTest::gtest GTest::gmock GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name}_tests)
+endfunction()

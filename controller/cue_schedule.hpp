@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/look.hpp"
+#include "core/plan.hpp"
+#include "core/result.hpp"
+#include "core/rig.hpp"
+#include "core/show.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::controller {
+
+/// An instant of show time at which lamps change, all buses together.
+struct Switch {
+  Instant time;
+  std::string cause;  ///< for traces and people: "growth/12 announced", "growth/12"
+};
+
+/// Lamps that somebody could take for the own one: same look, near the own goal.
+struct LampConfusion {
+  std::uint64_t before = 0;  ///< with one pattern for all
+  std::uint64_t after = 0;   ///< with the assigned patterns
+};
+
+/// What every lamp and wearable shows from switch to switch: a function of show time alone.
+class CueSchedule {
+ public:
+  CueSchedule(std::vector<Look> looks, std::vector<Switch> switches, std::size_t nodes, std::vector<LookIndex> table,
+              std::uint8_t plan_byte, LampConfusion confusion);
+
+  /// Entry i is look i; entry 0 is dark; at most 254 entries.
+  [[nodiscard]] const std::vector<Look>& looks() const { return looks_; }
+  [[nodiscard]] const std::vector<Switch>& switches() const { return switches_; }
+  /// All 32 channels of a node from switch `k` until the next; unused channels are dark.
+  [[nodiscard]] std::span<const LookIndex> looks_of(std::size_t k, NodeIndex node) const;
+  /// The last switch at or before a show time; the first one before it.
+  [[nodiscard]] std::size_t switch_at(Instant show_time) const;
+  [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
+  [[nodiscard]] LampConfusion confusion() const { return confusion_; }
+
+ private:
+  std::vector<Look> looks_;
+  std::vector<Switch> switches_;
+  std::size_t nodes_ = 0;
+  std::vector<LookIndex> table_;  ///< switches x nodes x 32
+  std::uint8_t plan_byte_ = 0;
+  LampConfusion confusion_;
+};
+
+/// Compiles a valid plan. Refused (ErrorKind::refused) for a plan that is not valid and, with the arithmetic, for a bus
+/// that cannot carry a switch's preloads and receipts before it is due with 30 % reserve.
+/// @param drivers one for each bus of the rig, for their budgets
+[[nodiscard]] Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
+                                                 const std::vector<std::unique_ptr<drivers::Driver>>& drivers);
+
+}  // namespace footlight::controller

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/clock.hpp"
+
+#include "core/check.hpp"
+
+namespace footlight {
+
+SteadyClock::SteadyClock() : zero_(std::chrono::steady_clock::now()) {}
+
+Instant SteadyClock::now() const {
+  return Instant(std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - zero_));
+}
+
+void ManualClock::advance_to(Instant instant) {
+  FL_CHECK(instant >= now());
+  now_.store(instant.time_since_epoch().count(), std::memory_order_release);
+}
+
+}  // namespace footlight

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostic.hpp"
+#include "core/index.hpp"
+#include "core/time.hpp"
+
+namespace footlight {
+
+enum class BusKind { serial, modbus_rtu, modbus_tcp, can };
+
+[[nodiscard]] std::string_view to_text(BusKind kind);
+
+/// Where a device keeps what in its Modbus registers; read from drivers/profiles/*.yaml (docs/wire-protocol.md,
+/// "Modbus").
+struct ModbusProfile {
+  std::string name;
+  int look_register = 0;                   ///< first register of the preload block
+  int looks_per_register = 2;              ///< 1 or 2; with 2 the lower channel stands in the high byte
+  bool has_preload_sequence = true;        ///< the register before the looks carries the latch sequence of the preload
+  std::optional<int> latch_register;       ///< broadcast-written with the sequence; absent: looks act at once
+  std::optional<int> heartbeat_register;   ///< broadcast-written every 250 ms; absent: no lease
+  std::optional<int> status_register;      ///< first of: shown sequence, pending sequence, CRC of shown looks, state
+  std::optional<int> look_table_register;  ///< upload block of one entry: index, red/green, blue/brightness, effect
+  friend bool operator==(const ModbusProfile&, const ModbusProfile&) = default;
+};
+
+/// One wire. `url` chooses the transport: sim://serial, sim://rtu, sim://tcp, sim://can, serial:///dev/...,
+/// rtu:///dev/..., tcp://host:502, can://can0.
+struct Bus {
+  std::string name;  ///< unique
+  BusKind kind = BusKind::serial;
+  std::string url;
+  int bits_per_second = 115'200;         ///< serial, RTU: 1200..4,000,000; CAN: 10,000..1,000,000
+  std::optional<ModbusProfile> profile;  ///< Modbus only
+  Position position;
+
+  [[nodiscard]] bool simulated() const { return url.rfind("sim://", 0) == 0; }
+};
+
+/// A cell's lamp or somebody's wearable on one channel of a node.
+struct Channel {
+  enum class Kind { unused, cell, wearable };
+  Kind kind = Kind::unused;
+  CellIndex cell;            ///< when kind is cell
+  PerformerIndex performer;  ///< when kind is wearable
+};
+
+inline constexpr int kChannelsPerNode = 32;
+
+struct Node {
+  std::string name;  ///< unique in the rig
+  BusIndex bus;
+  int address = 1;                ///< CAN 1..127, Modbus 1..247, serial 1..254; unique on its bus
+  std::vector<Channel> channels;  ///< 1..32
+  Position position;
+};
+
+/// One lamp: channel `channel` of node `node`.
+struct MarkerPlace {
+  NodeIndex node;
+  int channel = 0;
+  friend auto operator<=>(const MarkerPlace&, const MarkerPlace&) = default;
+};
+
+struct Rig {
+  std::string file;  ///< empty when made for the stage
+  std::vector<Bus> buses;
+  std::vector<Node> nodes;  ///< ordered by bus, then address
+};
+
+}  // namespace footlight

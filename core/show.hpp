@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/cue_number.hpp"
+#include "core/diagnostic.hpp"
+#include "core/index.hpp"
+#include "core/look.hpp"
+#include "core/stage.hpp"
+#include "core/tempo_map.hpp"
+
+namespace footlight {
+
+/// One person. Order in the show file is the order everywhere.
+struct Performer {
+  std::string id;    ///< stable, unique; "1".."N" where the show only counts
+  std::string name;  ///< as people call her; the id where none is given
+  std::optional<GroupIndex> group;
+  double radius_m =
+      0;  ///< 0: the stage's clearance holds; else two people keep the sum of their radii where that is more
+  double max_speed_mps = 0;  ///< 0: the section's or the stage's limit
+  std::string wearable;      ///< id of the wearable in the rig; empty: none
+};
+
+struct Group {
+  std::string name;
+  Colour colour;
+};
+
+/// How a picture is laid on the stage.
+enum class Fit {
+  area,     ///< the largest key frame fills as many cells as there are performers
+  contain,  ///< the whole frame fits on the stage without the reserve's columns
+  cover,    ///< the stage is covered by the frame
+};
+
+/// What counts as the picture in a frame, and where it lies on the stage.
+struct PictureOptions {
+  Fit fit = Fit::area;
+  std::optional<int> threshold;  ///< 0..255; Otsu over the section when absent
+  bool invert = false;           ///< dark pixels are the picture
+};
+
+struct VideoSource {
+  std::string path;  ///< as resolved against the show file's folder
+  int first_frame = 0;
+  std::optional<int> last_frame;  ///< included; the film's last when absent
+  PictureOptions picture;
+};
+struct ImageSource {
+  std::string path;
+  PictureOptions picture;
+};
+/// Explicit cells, read from CSV `performer,col,row` by config. `cells[p]` for every performer.
+struct CellsSource {
+  std::string path;
+  std::vector<CellIndex> cells;
+};
+using Source = std::variant<VideoSource, ImageSource, CellsSource>;
+
+/// Key frames of a video, Li 2020 Eq. 3-4.
+struct Sampling {
+  Duration interval = milliseconds(3200);  ///< longest time between key frames, show time (the paper's c)
+  double hash = 0.10;                      ///< share of differing hash bits that makes a new key frame, (0, 1]
+  bool snap_to_count = true;               ///< key frames fall on whole counts
+};
+
+enum class PlannerModel { flat, hierarchical };
+enum class PairingCost { squared, euclidean };
+
+struct PlannerOptions {
+  PlannerModel model = PlannerModel::hierarchical;
+  int layers = 2;                  ///< hierarchical: 1..6
+  int region_size = 60;            ///< most people in a region of the finest division (T_n)
+  double region_variance_m2 = 30;  ///< largest mean squared distance from a region's anchor (T_v), m^2
+  PairingCost cost = PairingCost::squared;
+};
+
+/// A stretch of the show with one source of formations: [start, start + duration + hold].
+struct Section {
+  std::string name;  ///< unique; the stable id
+  Source from;
+  double start_count = 1;
+  double duration_counts = 0;  ///< a video is stretched over it; 0 for images and cells
+  double hold_counts = 0;      ///< everybody stands still after the last formation
+  Sampling sampling;
+  PlannerOptions planner;
+  std::optional<double> max_speed_mps;
+  Position position;  ///< of the section in the show file, for messages
+
+  [[nodiscard]] double end_count() const { return start_count + duration_counts + hold_counts; }
+};
+
+enum class ContinueMode { manual, auto_continue, auto_follow };
+
+/// What GO starts. The continue mode stands on the earlier cue.
+struct Cue {
+  CueNumber number;
+  std::string name;
+  SectionIndex section;
+  ContinueMode continue_mode = ContinueMode::manual;
+  Duration pre_wait{};
+  Duration post_wait{};
+  std::string notes;
+  Position position;
+};
+
+/// What a cell's lamp tells (docs/looks.md).
+enum class LampRole {
+  here,      ///< somebody stands on it now and stays
+  arrive,    ///< somebody walks to it now
+  next,      ///< somebody will walk to it at the next move
+  handover,  ///< somebody stands on it now and leaves, somebody else is the next here
+};
+inline constexpr int kLampRoles = 4;
+
+/// Colour (nothing: the group's) and effect of a role.
+struct LookChoice {
+  std::optional<Colour> colour;
+  Effect effect = Effect::steady;
+  std::uint8_t brightness = 255;
+};
+
+struct Show {
+  std::string title;
+  std::string file;  ///< path of the show file
+  Stage stage;
+  std::vector<Performer> performers;
+  std::vector<Group> groups;
+  TempoMap tempo;
+  std::vector<Section> sections;  ///< ascending by start, not overlapping
+  std::vector<Cue> cues;          ///< ascending by number
+  std::map<LampRole, LookChoice> looks;
+  double announce_counts = 4;            ///< the next places light this long before a move; a count-down
+  Colour default_colour{255, 255, 255};  ///< of performers without a group
+  std::string rig_file;                  ///< resolved; empty: simulated buses made for the stage
+};
+
+}  // namespace footlight

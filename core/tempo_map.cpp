@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/tempo_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace footlight {
+namespace {
+
+std::vector<double> times_of(const std::vector<TempoChange>& changes) {
+  std::vector<double> out{0.0};
+  for (std::size_t i = 1; i < changes.size(); ++i) {
+    out.push_back(out.back() + (changes[i].count - changes[i - 1].count) * 60.0 / changes[i - 1].bpm);
+  }
+  return out;
+}
+
+}  // namespace
+
+TempoMap::TempoMap(double bpm, int beats_per_measure)
+    : changes_{{1, bpm}}, change_s_{0.0}, beats_per_measure_(beats_per_measure) {
+  FL_CHECK(bpm > 0 && beats_per_measure >= 1);
+}
+
+Result<TempoMap> TempoMap::from(std::vector<TempoChange> changes, int beats_per_measure) {
+  if (beats_per_measure < 1) return input_error("a measure has at least one beat");
+  if (changes.empty() || changes.front().count != 1) return input_error("the first tempo begins at count 1");
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (!(changes[i].bpm >= 1 && changes[i].bpm <= 1000))
+      return input_error("a tempo lies between 1 and 1000 counts a minute");
+    if (i > 0 && !(changes[i].count > changes[i - 1].count)) return input_error("the counts of tempo changes increase");
+  }
+  TempoMap map(changes.front().bpm, beats_per_measure);
+  map.change_s_ = times_of(changes);
+  map.changes_ = std::move(changes);
+  return map;
+}
+
+Instant TempoMap::at(double count) const {
+  const auto after = std::upper_bound(changes_.begin() + 1, changes_.end(), count,
+                                      [](double c, const TempoChange& t) { return c < t.count; });
+  const std::size_t i = static_cast<std::size_t>(after - changes_.begin()) - 1;
+  return instant_at(change_s_[i] + (count - changes_[i].count) * 60.0 / changes_[i].bpm);
+}
+
+double TempoMap::count_at(Instant instant) const {
+  const double s = to_seconds(instant);
+  const auto after = std::upper_bound(change_s_.begin() + 1, change_s_.end(), s);
+  const std::size_t i = static_cast<std::size_t>(after - change_s_.begin()) - 1;
+  return changes_[i].count + (s - change_s_[i]) * changes_[i].bpm / 60.0;
+}
+
+double TempoMap::bpm_at(double count) const {
+  const auto after = std::upper_bound(changes_.begin() + 1, changes_.end(), count,
+                                      [](double c, const TempoChange& t) { return c < t.count; });
+  return std::prev(after)->bpm;
+}
+
+std::string TempoMap::measure_beat(double count) const {
+  const double beats = count - 1;
+  const double measure = std::floor(beats / beats_per_measure_);
+  const double beat = beats - measure * beats_per_measure_ + 1;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.0f:%.6g", measure + 1, beat);
+  return text;
+}
+
+}  // namespace footlight

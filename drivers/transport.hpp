@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/time.hpp"
+
+namespace footlight::drivers {
+
+/// Answer of a port that never blocks.
+enum class SendStatus {
+  accepted,  ///< will be on the wire, or is already
+  busy,      ///< queue full or a request under way: nothing was taken, try again after the next step
+  down,      ///< the wire is gone
+};
+
+/// Bytes in, bytes out: serial ports, pseudo-terminals, the simulated serial bus. One owner; never blocks.
+class ByteStream {
+ public:
+  virtual ~ByteStream() = default;
+  /// All bytes or none.
+  virtual SendStatus write(std::span<const std::uint8_t> bytes) = 0;
+  /// @return how many bytes were put into `buffer`
+  virtual std::size_t read(std::span<std::uint8_t> buffer) = 0;
+  /// Time that `bytes` characters take on the wire.
+  [[nodiscard]] virtual Duration wire_time(std::size_t bytes) const = 0;
+};
+
+/// A classic CAN data frame with an 11-bit identifier.
+struct CanFrame {
+  std::uint16_t id = 0;
+  std::uint8_t length = 0;  ///< 0..8
+  std::array<std::uint8_t, 8> data{};
+
+  friend bool operator==(const CanFrame&, const CanFrame&) = default;
+};
+
+/// A CAN interface. One owner; never blocks.
+class CanPort {
+ public:
+  virtual ~CanPort() = default;
+  virtual SendStatus send(const CanFrame& frame) = 0;
+  /// @return false when nothing has arrived
+  virtual bool receive(CanFrame& frame) = 0;
+  /// Time of one frame on the wire at worst stuffing, inter-frame space included.
+  [[nodiscard]] virtual Duration wire_time(const CanFrame& frame) const = 0;
+  /// Frames accepted and not yet on the wire.
+  [[nodiscard]] virtual std::size_t queued() const = 0;
+};
+
+/// One Modbus request at the level of libmodbus; framing and check sums belong to the port.
+struct ModbusRequest {
+  std::uint8_t unit = 0;      ///< 0: broadcast, writes only, no answer
+  std::uint8_t function = 3;  ///< 0x03 read holding registers, 0x06 write one, 0x10 write several
+  std::uint16_t first_register = 0;
+  std::uint16_t count = 0;  ///< registers read, or values.size()
+  std::vector<std::uint16_t> values;
+};
+
+struct ModbusReply {
+  enum class Outcome { ok, exception, timeout, garbled };
+  Outcome outcome = Outcome::ok;
+  std::uint8_t unit = 0;
+  std::uint8_t function = 0;
+  std::uint8_t exception_code = 0;    ///< 1..11 when outcome is exception
+  std::vector<std::uint16_t> values;  ///< of a read
+};
+
+/// A Modbus line or connection. One owner. One request at a time; simulated ports never block, a port of a blocking
+/// library finishes the request inside `submit`.
+class ModbusPort {
+ public:
+  virtual ~ModbusPort() = default;
+  virtual SendStatus submit(const ModbusRequest& request) = 0;
+  /// The reply to the request under way, once; a broadcast has none and is simply over.
+  virtual std::optional<ModbusReply> poll() = 0;
+  /// True while a request is on the wire or awaits its reply.
+  [[nodiscard]] virtual bool busy() const = 0;
+  /// Time on the wire of request, silences, the device's longest turnaround and reply.
+  [[nodiscard]] virtual Duration wire_time(const ModbusRequest& request) const = 0;
+};
+
+}  // namespace footlight::drivers
