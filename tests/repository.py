@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""House rules that a compiler does not see: the dependency rule between folders, sources that no target builds, files without a licence
+line, clocks read outside of core/clock.cpp, libraries used outside of their one place. One line for each finding; exit status 1 if any."""
+import os
+import re
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+FOLDERS = ["core", "config", "planner", "drivers", "sim", "controller", "app"]
+MAY_INCLUDE = {
+    "core": {"core"},
+    "config": {"core", "config"},
+    "planner": {"core", "planner"},
+    "drivers": {"core", "drivers"},
+    "sim": {"core", "sim"},
+    "controller": {"core", "controller"},
+    "app": set(FOLDERS),
+}
+# The seam between controller or sim and the drivers is these two headers and nothing else.
+SEAM = {"drivers/driver.hpp", "drivers/transport.hpp"}
+ONLY_IN = {  # library header -> the only places that may include it
+    r"yaml-cpp/": r"^config/",
+    r"libserialport\.h": r"^drivers/transports/",
+    r"modbus(/modbus)?\.h": r"^drivers/transports/",
+    r"gpiod\.h": r"^drivers/transports/",
+    r"linux/can": r"^drivers/transports/",
+    r"sqlite3\.h": r"^config/",
+    r"opencv2/": r"^config/media/|^config/decode|^planner/",
+    r"cairo": r"^app/",
+    r"CLI/": r"^app/",
+}
+
+
+def tracked(*patterns):
+    out = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")
+    return [f for f in out if f and os.path.exists(os.path.join(ROOT, f))]
+
+
+def main():
+    findings = []
+    product = [f for d in FOLDERS for f in tracked(f"{d}/*.cpp", f"{d}/*.hpp")]
+    cmake = "".join(open(os.path.join(ROOT, f)).read() for f in tracked("*CMakeLists.txt"))
+    for path in product + tracked("tests/*.cpp", "tests/*.hpp"):
+        with open(os.path.join(ROOT, path)) as f:
+            text = f.read()
+        if not text.startswith("// SPDX-License-Identifier: Apache-2.0\n"):
+            findings.append(f"{path}:1: the first line names the licence (// SPDX-License-Identifier: Apache-2.0)")
+        if path.endswith(".cpp") and os.path.basename(path) not in cmake:
+            findings.append(f"{path}: no target builds it")
+        folder = path.split("/")[0]
+        for number, line in enumerate(text.split("\n"), 1):
+            quoted = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+            if quoted and folder in MAY_INCLUDE:
+                other = quoted[1].split("/")[0]
+                seam = folder in ("sim", "controller") and quoted[1] in SEAM
+                if other in FOLDERS and other not in MAY_INCLUDE[folder] and not seam:
+                    findings.append(f"{path}:{number}: {folder} may not include {quoted[1]}")
+            angled = re.match(r"\s*#\s*include\s+<([^>]+)>", line)
+            if angled and folder in MAY_INCLUDE:
+                for library, place in ONLY_IN.items():
+                    if re.match(library, angled[1]) and not re.match(place, path):
+                        findings.append(f"{path}:{number}: <{angled[1]}> is included only in {place}")
+            if folder in MAY_INCLUDE and path not in ("core/clock.cpp", "core/clock.hpp") and \
+                    re.search(r"(steady_clock|system_clock|high_resolution_clock)::now|clock_gettime|gettimeofday", line):
+                findings.append(f"{path}:{number}: the time is read from a core/clock.hpp Clock")
+    for finding in findings:
+        print(finding)
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
