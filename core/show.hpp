@@ -57,10 +57,12 @@ struct ImageSource {
   std::string path;
   PictureOptions picture;
 };
-/// Explicit cells, read from CSV `performer,col,row` by config. `cells[p]` for every performer.
+/// Explicit cells, read from CSV by config. With a `performer` column everybody's cell is given; without one the cells
+/// are given and the planner chooses who goes where.
 struct CellsSource {
   std::string path;
-  std::vector<CellIndex> cells;
+  std::vector<CellIndex> cells;  ///< as many as performers; of performer p when assigned
+  bool assigned = true;          ///< the file says who stands where
 };
 using Source = std::variant<VideoSource, ImageSource, CellsSource>;
 
