@@ -56,7 +56,7 @@ inline constexpr int kChannelsPerNode = 32;
 struct Node {
   std::string name;  ///< unique in the rig
   BusIndex bus;
-  int address = 1;                ///< CAN 1..127, Modbus 1..247, serial 1..254; unique on its bus
+  int address = 1;                ///< CAN 1..126, Modbus 1..247, serial 1..254; unique on its bus
   std::vector<Channel> channels;  ///< 1..32
   Position position;
 };

@@ -33,7 +33,7 @@ struct NodeAddress {
 /// What has become of one node or of the bus, as told by the wire.
 struct DeviceEvent {
   enum class Kind {
-    preloaded,  ///< the node has taken the preload `sequence`
+    preloaded,  ///< the node has taken the preload `sequence`; CANopen has no receipt: it has left for the wire
     showing,    ///< the node shows `crc` since latch `sequence`; `state` and `boots` are set
     booted,     ///< the node has restarted and shows NO-GUIDANCE
     missed,     ///< no answer in time, or a wrong one
@@ -76,6 +76,7 @@ class Driver {
 
   /// Budget on the wire, receipts, silences and turnarounds included, without faults. Pure.
   [[nodiscard]] virtual Duration preload_time(int channels) const = 0;
+  /// One node's; the answers to a latch (`pushes_status`) take as much each.
   [[nodiscard]] virtual Duration status_time() const = 0;
   /// From handing over a latch on an idle bus until its last bit is on the wire.
   [[nodiscard]] virtual Duration latch_time() const = 0;
@@ -85,10 +86,12 @@ class Driver {
 
   // Operations: accepted means under way; what comes of it is told by events.
   virtual SendStatus start(Instant now) = 0;  ///< wakes the nodes of the bus (CANopen NMT start; nothing elsewhere)
+  /// @param looks as many as the node has channels
   virtual SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                              Instant now) = 0;
   virtual SendStatus latch(Sequence sequence, Instant now) = 0;
   virtual SendStatus heartbeat(Duration show_time, Instant now) = 0;
+  /// Asks for a node's status. On CANopen busy between a preload and its latch: the SYNC that asks would be the latch.
   virtual SendStatus ask(const NodeAddress& node, Instant now) = 0;
   virtual SendStatus upload_look(LookIndex index, const Look& look, Instant now) = 0;
 

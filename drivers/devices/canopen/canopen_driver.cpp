@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/devices/canopen/canopen_driver.hpp"
+
+#include <algorithm>
+#include <type_traits>
+#include <variant>
+
+#include "core/check.hpp"
+
+namespace footlight::drivers {
+namespace {
+
+// Frames that may stand in the port's queue after a preload. SocketCAN's default queue holds ten: two places stay free
+// for a heartbeat and an NMT start, and a latch never waits for more than this.
+constexpr std::size_t kWindow = 8;
+constexpr std::size_t kMostFrames = 4;  // of one operation
+constexpr int kFramesPerStep = 256;     // a flood must not keep us from sending
+constexpr Duration kSilence = milliseconds(2500);
+constexpr Duration kLongestTurnaround = milliseconds(5);
+constexpr Duration kMargin = milliseconds(10);  // scheduling of the machine, a late node
+
+constexpr std::uint8_t kBootUp = 0;
+constexpr std::uint8_t kStopped = 4;
+constexpr std::uint8_t kOperational = 5;
+constexpr std::uint8_t kPreOperational = 127;
+
+}  // namespace
+
+CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes) : port_(port) {
+  by_address_.fill(-1);
+  for (const NodeAddress& address : nodes) {
+    FL_CHECK(address.address >= 1 && address.address <= canopen::kLastNode);
+    FL_CHECK(by_address_[address.address] < 0);
+    by_address_[address.address] = static_cast<std::int16_t>(nodes_.size());
+    NodeState node;
+    node.address = address;
+    nodes_.push_back(node);
+  }
+}
+
+Capabilities CanopenDriver::capabilities() const {
+  Capabilities can;
+  can.sequenced_latch = false;
+  can.pushes_status = true;
+  return can;
+}
+
+Duration CanopenDriver::preload_time(int channels) const {
+  const std::vector<LookIndex> looks(static_cast<std::size_t>(channels));
+  Duration sum{};
+  for (const CanFrame& frame : canopen::preload(1, looks)) sum += port_.wire_time(frame);
+  return sum;
+}
+
+Duration CanopenDriver::status_time() const { return port_.wire_time(canopen::status_pdo_shape()); }
+
+Duration CanopenDriver::latch_time() const { return port_.wire_time(canopen::sync(kLastSequence)); }
+
+bool CanopenDriver::ready() const { return outbox_.empty() && port_.queued() + kMostFrames <= kWindow; }
+
+SendStatus CanopenDriver::start(Instant now) {
+  if (!ready()) return SendStatus::busy;
+  const SendStatus status = hand_over(canopen::nmt(canopen::NmtCommand::start, 0));
+  if (status != SendStatus::accepted) return status;
+  started_ = true;
+  for (NodeState& node : nodes_) node.heard = now;
+  return status;
+}
+
+SendStatus CanopenDriver::preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
+                                  Instant /*now*/) {
+  FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
+  FL_CHECK(looks.size() == node.channels);
+  if (!ready()) return SendStatus::busy;
+  for (const CanFrame& frame : canopen::preload(node.address, looks)) outbox_.push_back(frame);
+  leaving_ = Preload{node.node, sequence, 0};
+  unlatched_ = true;
+  pump();
+  if (!down_) return SendStatus::accepted;
+  outbox_.clear();
+  leaving_.reset();
+  return SendStatus::down;
+}
+
+SendStatus CanopenDriver::latch(Sequence sequence, Instant now) {
+  FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
+  return send_sync(sequence, now);
+}
+
+SendStatus CanopenDriver::heartbeat(Duration /*show_time*/, Instant /*now*/) {
+  return hand_over(canopen::controller_heartbeat());
+}
+
+SendStatus CanopenDriver::ask(const NodeAddress& node, Instant now) {
+  const NodeState* state = find(node.address);
+  FL_CHECK(state != nullptr);
+  if (state->awaits_status) return SendStatus::accepted;  // the last SYNC has asked already
+  if (unlatched_) return SendStatus::busy;
+  return send_sync(last_sequence_ == 0 ? kLastSequence : last_sequence_, now);
+}
+
+SendStatus CanopenDriver::upload_look(LookIndex index, const Look& look, Instant /*now*/) {
+  if (!ready()) return SendStatus::busy;
+  for (const CanFrame& frame : canopen::look_entry(index, look)) outbox_.push_back(frame);
+  pump();
+  if (!down_) return SendStatus::accepted;
+  outbox_.clear();
+  return SendStatus::down;
+}
+
+SendStatus CanopenDriver::hand_over(const CanFrame& frame) {
+  const SendStatus status = port_.send(frame);
+  if (status == SendStatus::accepted) ++handed_over_;
+  if (status != SendStatus::busy) down_ = status == SendStatus::down;
+  return status;
+}
+
+SendStatus CanopenDriver::send_sync(Sequence sequence, Instant now) {
+  if (!outbox_.empty()) return SendStatus::busy;
+  const SendStatus status = hand_over(canopen::sync(sequence));
+  if (status != SendStatus::accepted) return status;
+  last_sequence_ = sequence;
+  unlatched_ = false;
+  for (NodeState& node : nodes_) node.awaits_status = true;
+  const auto frames = static_cast<Duration::rep>(port_.queued() + nodes_.size());
+  status_deadline_ = now + frames * status_time() + kLongestTurnaround + kMargin;
+  return status;
+}
+
+void CanopenDriver::pump() {
+  for (NodeState& node : nodes_) {
+    if (!node.start_due) continue;
+    if (hand_over(canopen::nmt(canopen::NmtCommand::start, node.address.address)) != SendStatus::accepted) return;
+    node.start_due = false;
+  }
+  while (!outbox_.empty()) {
+    if (hand_over(outbox_.front()) != SendStatus::accepted) return;
+    outbox_.pop_front();
+  }
+  if (leaving_) {
+    leaving_->last_frame = handed_over_;
+    on_the_way_.push_back(*leaving_);
+    leaving_.reset();
+  }
+}
+
+Instant CanopenDriver::step(Instant now, EventSink& events) {
+  CanFrame frame;
+  int heard = 0;
+  while (heard < kFramesPerStep && port_.receive(frame)) {
+    ++heard;
+    hear(frame, now, events);
+  }
+  pump();
+  tell_preloads(events);
+  tell_bus(events);
+  Instant next = tell_missed(now, events);
+  const bool starting = std::any_of(nodes_.begin(), nodes_.end(), [](const NodeState& node) { return node.start_due; });
+  if (!ready() || starting || !on_the_way_.empty()) next = std::min(next, now + status_time());
+  return heard == kFramesPerStep ? now : next;
+}
+
+void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) {
+  const canopen::Heard heard = canopen::decode(frame);
+  const auto visit = [&](const auto& message) {
+    if constexpr (!std::is_same_v<std::decay_t<decltype(message)>, std::monostate>) {
+      NodeState* node = find(message.node);
+      if (node == nullptr) return;
+      node->heard = now;
+      if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::StatusPdo>) {
+        hear_status(*node, message, events);
+      } else if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::NodeHeartbeat>) {
+        hear_heartbeat(*node, message.state, events);
+      } else if (message.code != 0) {
+        DeviceEvent event{DeviceEvent::Kind::rejected, node->address.node};
+        event.detail = message.code;
+        events.on_event(event);
+      }
+    }
+  };
+  std::visit(visit, heard);
+}
+
+void CanopenDriver::hear_status(NodeState& node, const canopen::StatusPdo& status, EventSink& events) {
+  node.operational = true;
+  if (node.boots && *node.boots != status.boots) {
+    events.on_event({DeviceEvent::Kind::booted, node.address.node});
+  }
+  node.boots = status.boots;
+  if (status.shown_sequence == last_sequence_) node.awaits_status = false;
+  DeviceEvent event{DeviceEvent::Kind::showing, node.address.node, status.shown_sequence};
+  event.crc = status.crc;
+  event.state = status.state;
+  event.boots = status.boots;
+  events.on_event(event);
+}
+
+void CanopenDriver::hear_heartbeat(NodeState& node, std::uint8_t state, EventSink& events) {
+  // Pre-operational after operational: it has restarted and its boot-up message was lost.
+  if (state == kBootUp || (state == kPreOperational && node.operational)) {
+    node.boots.reset();
+    events.on_event({DeviceEvent::Kind::booted, node.address.node});
+  }
+  node.operational = state == kOperational;
+  const bool waits = state == kBootUp || state == kStopped || state == kPreOperational;
+  node.start_due = started_ && waits;
+}
+
+void CanopenDriver::tell_preloads(EventSink& events) {
+  const std::uint64_t on_the_wire = handed_over_ - std::min<std::uint64_t>(handed_over_, port_.queued());
+  while (!on_the_way_.empty() && on_the_way_.front().last_frame <= on_the_wire) {
+    const Preload& preload = on_the_way_.front();
+    events.on_event({DeviceEvent::Kind::preloaded, preload.node, preload.sequence});
+    on_the_way_.pop_front();
+  }
+}
+
+void CanopenDriver::tell_bus(EventSink& events) {
+  if (down_) {
+    if (leaving_) on_the_way_.push_back(*leaving_);
+    for (const Preload& preload : on_the_way_) {
+      events.on_event({DeviceEvent::Kind::missed, preload.node, preload.sequence});
+    }
+    leaving_.reset();
+    on_the_way_.clear();
+    outbox_.clear();
+  }
+  if (down_ == down_told_) return;
+  down_told_ = down_;
+  events.on_event({down_ ? DeviceEvent::Kind::bus_down : DeviceEvent::Kind::bus_up, NodeIndex{}});
+}
+
+Instant CanopenDriver::tell_missed(Instant now, EventSink& events) {
+  const bool overdue = now >= status_deadline_;
+  if (overdue) status_deadline_ = kNever;
+  Instant next = status_deadline_;
+  for (NodeState& node : nodes_) {
+    if (overdue && node.awaits_status) {
+      node.awaits_status = false;
+      events.on_event({DeviceEvent::Kind::missed, node.address.node, last_sequence_});
+    }
+    if (!started_) continue;
+    if (now - node.heard >= kSilence) {
+      node.heard = now;  // the next miss is due after as long a silence again
+      node.operational = false;
+      events.on_event({DeviceEvent::Kind::missed, node.address.node});
+    }
+    next = std::min(next, node.heard + kSilence);
+  }
+  return next;
+}
+
+CanopenDriver::NodeState* CanopenDriver::find(std::uint8_t address) {
+  const std::int16_t index = address < by_address_.size() ? by_address_[address] : std::int16_t{-1};
+  return index < 0 ? nullptr : &nodes_[static_cast<std::size_t>(index)];
+}
+
+}  // namespace footlight::drivers

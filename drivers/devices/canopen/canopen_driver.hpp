@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "drivers/devices/canopen/canopen_frames.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::drivers {
+
+/// CANopen markers (docs/wire-protocol.md, section 3): RPDOs preload, SYNC latches, TPDO1 tells what is shown.
+///
+/// An RPDO has no receipt: `preloaded` says that all frames of the preload have left the port, `showing` alone is
+/// proof. A SYNC asks every node at once; `ask` sends one with the last sequence, which changes no lamp, and is busy
+/// between a preload and its latch, where it would be the latch. Nodes that boot or that wait in pre-operational are
+/// started by the driver itself. A node is `missed` when it leaves a SYNC unanswered and for each 2.5 s of its silence.
+class CanopenDriver final : public Driver {
+ public:
+  /// @param port borrowed for the life of the driver
+  CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes);
+
+  [[nodiscard]] std::string_view language() const override { return "canopen"; }
+  [[nodiscard]] Capabilities capabilities() const override;
+  [[nodiscard]] Duration preload_time(int channels) const override;
+  /// One node's TPDO: a single SYNC asks all of them.
+  [[nodiscard]] Duration status_time() const override;
+  [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] bool ready() const override;
+
+  SendStatus start(Instant now) override;
+  SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
+                     Instant now) override;
+  SendStatus latch(Sequence sequence, Instant now) override;
+  SendStatus heartbeat(Duration show_time, Instant now) override;
+  SendStatus ask(const NodeAddress& node, Instant now) override;
+  SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  Instant step(Instant now, EventSink& events) override;
+
+ private:
+  struct NodeState {
+    NodeAddress address;
+    Instant heard;                       ///< last frame, or when we began to listen
+    bool operational = false;            ///< as far as it has told
+    bool start_due = false;              ///< NMT start is to be sent
+    bool awaits_status = false;          ///< owes a TPDO for the last SYNC
+    std::optional<std::uint16_t> boots;  ///< since its last boot-up message
+  };
+  struct Preload {
+    NodeIndex node;
+    Sequence sequence = 0;
+    std::uint64_t last_frame = 0;  ///< count of frames handed to the port, with its own last one
+  };
+
+  SendStatus hand_over(const CanFrame& frame);
+  SendStatus send_sync(Sequence sequence, Instant now);
+  void pump();
+  void hear(const CanFrame& frame, Instant now, EventSink& events);
+  void hear_status(NodeState& node, const canopen::StatusPdo& status, EventSink& events);
+  void hear_heartbeat(NodeState& node, std::uint8_t state, EventSink& events);
+  void tell_preloads(EventSink& events);
+  void tell_bus(EventSink& events);
+  Instant tell_missed(Instant now, EventSink& events);
+  [[nodiscard]] NodeState* find(std::uint8_t address);
+
+  CanPort& port_;
+  std::vector<NodeState> nodes_;
+  std::array<std::int16_t, 128> by_address_{};  ///< -1: not ours
+  std::deque<CanFrame> outbox_;                 ///< accepted by us, not yet by the port
+  std::optional<Preload> leaving_;              ///< the preload whose frames stand in the outbox
+  std::deque<Preload> on_the_way_;              ///< handed to the port, perhaps not yet on the wire
+  std::uint64_t handed_over_ = 0;
+  Sequence last_sequence_ = 0;
+  bool started_ = false;
+  bool unlatched_ = false;  ///< a preload has been sent since the last SYNC
+  bool down_ = false;
+  bool down_told_ = false;
+  Instant status_deadline_ = kNever;
+};
+
+}  // namespace footlight::drivers

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/devices/footlight_serial/serial_driver.hpp"
+
+#include <array>
+
+#include "core/check.hpp"
+
+namespace footlight::drivers {
+namespace {
+
+using footlight_serial::Command;
+using footlight_serial::Frame;
+using footlight_serial::frame_length;
+
+constexpr Duration kTurnaround = milliseconds(2);  // longest, of a node
+constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, an adapter's latency, a late node
+constexpr std::size_t kHeartbeatBody = 4;
+constexpr std::size_t kLatchBody = 4;
+constexpr int kReadsPerStep = 64;  // a flood must not keep us from sending
+
+}  // namespace
+
+SerialDriver::SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte)
+    : port_(port), plan_byte_(plan_byte) {
+  for (const NodeAddress& node : nodes) {
+    FL_CHECK(node.address >= 1 && node.address <= 254);
+    FL_CHECK(boots_.emplace(node.address, std::nullopt).second);
+  }
+}
+
+Duration SerialDriver::preload_time(int channels) const {
+  const auto looks = static_cast<std::size_t>(channels);
+  return port_.wire_time(frame_length(1 + looks)) + kTurnaround +
+         port_.wire_time(frame_length(footlight_serial::kReceiptBody));
+}
+
+Duration SerialDriver::status_time() const {
+  return port_.wire_time(frame_length(0)) + kTurnaround + port_.wire_time(frame_length(footlight_serial::kStatusBody));
+}
+
+Duration SerialDriver::latch_time() const { return port_.wire_time(frame_length(kLatchBody)); }
+
+SendStatus SerialDriver::start(Instant /*now*/) { return SendStatus::accepted; }
+
+SendStatus SerialDriver::preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
+                                 Instant now) {
+  FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
+  FL_CHECK(looks.size() == node.channels);
+  const Frame frame = footlight_serial::preload(node.address, plan_byte_, sequence, looks);
+  return send(frame, Awaited{node, Command::preload, sequence, looks_crc(looks)}, footlight_serial::kReceiptBody, now);
+}
+
+SendStatus SerialDriver::latch(Sequence sequence, Instant now) {
+  FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
+  return send(footlight_serial::latch(plan_byte_, sequence), std::nullopt, 0, now);
+}
+
+SendStatus SerialDriver::heartbeat(Duration show_time, Instant now) {
+  const auto show_ms = static_cast<std::uint32_t>(show_time / milliseconds(1));
+  return send(footlight_serial::heartbeat(plan_byte_, show_ms), std::nullopt, 0, now);
+}
+
+SendStatus SerialDriver::ask(const NodeAddress& node, Instant now) {
+  const Frame frame = footlight_serial::status_request(node.address, plan_byte_);
+  return send(frame, Awaited{node, Command::status}, footlight_serial::kStatusBody, now);
+}
+
+SendStatus SerialDriver::upload_look(LookIndex index, const Look& look, Instant now) {
+  return send(footlight_serial::look_entry(plan_byte_, index, look), std::nullopt, 0, now);
+}
+
+SendStatus SerialDriver::send(const Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
+                              Instant now) {
+  if (awaited_ || now < line_free_) return SendStatus::busy;
+  const std::vector<std::uint8_t> bytes = encode(frame);
+  const SendStatus status = port_.write(bytes);
+  if (status != SendStatus::busy) down_ = status == SendStatus::down;
+  if (status != SendStatus::accepted) return status;
+  line_free_ = now + port_.wire_time(bytes.size());
+  if (awaited) line_free_ += kTurnaround + port_.wire_time(frame_length(answer_bytes)) + kMargin;
+  awaited_ = awaited;
+  line_taken_ = true;
+  return status;
+}
+
+Instant SerialDriver::step(Instant now, EventSink& events) {
+  std::array<std::uint8_t, 256> buffer{};
+  int reads = 0;
+  for (; reads < kReadsPerStep; ++reads) {
+    const std::size_t count = port_.read(buffer);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (const auto frame = receiver_.take(buffer[i])) hear(*frame, events);
+    }
+    if (count == 0) break;
+  }
+  if (awaited_ && now >= line_free_) {
+    events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
+    awaited_.reset();
+  }
+  if (down_ != down_told_) {
+    down_told_ = down_;
+    events.on_event({down_ ? DeviceEvent::Kind::bus_down : DeviceEvent::Kind::bus_up, NodeIndex{}});
+  }
+  line_taken_ = awaited_ || now < line_free_;
+  if (reads == kReadsPerStep) return now;
+  return line_taken_ ? line_free_ : kNever;
+}
+
+void SerialDriver::hear(const Frame& frame, EventSink& events) {
+  if (!awaited_ || frame.address != awaited_->node.address || frame.command != awaited_->command) return;
+  if (const auto status = decode_status(frame)) {
+    tell_status(*status, frame.sequence, events);
+  } else if (const auto crc = decode_receipt(frame)) {
+    if (frame.sequence != awaited_->sequence || *crc != awaited_->crc) return;
+    events.on_event({DeviceEvent::Kind::preloaded, awaited_->node.node, frame.sequence});
+  } else {
+    return;
+  }
+  awaited_.reset();
+  line_free_ = Instant{};  // the answer was the last thing on the line
+}
+
+void SerialDriver::tell_status(const footlight_serial::NodeStatus& status, Sequence shown, EventSink& events) {
+  std::optional<std::uint16_t>& boots = boots_[awaited_->node.address];
+  if (boots && *boots != status.boots) events.on_event({DeviceEvent::Kind::booted, awaited_->node.node});
+  boots = status.boots;
+  DeviceEvent event{DeviceEvent::Kind::showing, awaited_->node.node, shown};
+  event.crc = status.crc;
+  event.state = status.state;
+  event.boots = status.boots;
+  events.on_event(event);
+}
+
+}  // namespace footlight::drivers

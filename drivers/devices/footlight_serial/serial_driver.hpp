@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "drivers/devices/footlight_serial/serial_frame.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::drivers {
+
+/// Footlight serial markers (docs/wire-protocol.md, section 2) on an RS-485 line or a pseudo-terminal.
+///
+/// One frame at a time on the line: an operation is busy while an earlier frame is being sent or its answer awaited.
+/// The time-out of an answer is its latest possible end (what is on the wire before it, 2 ms turnaround, its own
+/// length) and a margin for the machine. Answers that do not fit what was asked are not ours and change nothing.
+class SerialDriver final : public Driver {
+ public:
+  /// @param port borrowed for the life of the driver
+  SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte);
+
+  [[nodiscard]] std::string_view language() const override { return "footlight-serial"; }
+  [[nodiscard]] Capabilities capabilities() const override { return {}; }
+  [[nodiscard]] Duration preload_time(int channels) const override;
+  [[nodiscard]] Duration status_time() const override;
+  [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] bool ready() const override { return !line_taken_; }
+
+  SendStatus start(Instant now) override;
+  SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
+                     Instant now) override;
+  SendStatus latch(Sequence sequence, Instant now) override;
+  SendStatus heartbeat(Duration show_time, Instant now) override;
+  SendStatus ask(const NodeAddress& node, Instant now) override;
+  SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  Instant step(Instant now, EventSink& events) override;
+
+ private:
+  /// What an answer must be.
+  struct Awaited {
+    NodeAddress node;
+    footlight_serial::Command command = footlight_serial::Command::status;
+    Sequence sequence = 0;
+    std::uint16_t crc = 0;
+  };
+
+  SendStatus send(const footlight_serial::Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
+                  Instant now);
+  void hear(const footlight_serial::Frame& frame, EventSink& events);
+  void tell_status(const footlight_serial::NodeStatus& status, Sequence shown, EventSink& events);
+
+  ByteStream& port_;
+  std::uint8_t plan_byte_;
+  std::map<std::uint8_t, std::optional<std::uint16_t>> boots_;  ///< last known, by address
+  footlight_serial::FrameReceiver receiver_;
+  std::optional<Awaited> awaited_;
+  Instant line_free_{};      ///< the last byte sent has left by then; with `awaited_`, its answer is given up then
+  bool line_taken_ = false;  ///< as of the last call
+  bool down_ = false;
+  bool down_told_ = false;
+};
+
+}  // namespace footlight::drivers

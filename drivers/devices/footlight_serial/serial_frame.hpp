@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/look.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::drivers::footlight_serial {
+
+// Frames of docs/wire-protocol.md, section 2. Pure functions but for FrameReceiver.
+
+enum class Command : std::uint8_t { preload = 1, latch = 2, heartbeat = 3, status = 4, look = 5, identify = 6 };
+enum class Direction : std::uint8_t { from_controller = 0x01, from_node = 0x81 };
+
+/// A frame's content: what CRC-32 covers.
+struct Frame {
+  Direction direction = Direction::from_controller;
+  Command command = Command::status;
+  std::uint8_t address = 0;
+  std::uint8_t plan_byte = 0;
+  Sequence sequence = 0;
+  std::vector<std::uint8_t> body;
+
+  friend bool operator==(const Frame&, const Frame&) = default;
+};
+
+inline constexpr std::size_t kLongestBody = 40;
+inline constexpr std::size_t kReceiptBody = 2;
+inline constexpr std::size_t kStatusBody = 8;
+
+/// Bytes on the wire of a frame with a body of that length: delimiters, COBS, header, CRC.
+[[nodiscard]] constexpr std::size_t frame_length(std::size_t body) { return 1 + 1 + 5 + body + 4 + 1; }
+
+/// As it takes the wire, delimiters on both sides. @param frame body of at most kLongestBody bytes
+[[nodiscard]] std::vector<std::uint8_t> encode(const Frame& frame);
+
+[[nodiscard]] Frame preload(std::uint8_t address, std::uint8_t plan_byte, Sequence sequence,
+                            std::span<const LookIndex> looks);
+[[nodiscard]] Frame latch(std::uint8_t plan_byte, Sequence sequence);
+[[nodiscard]] Frame heartbeat(std::uint8_t plan_byte, std::uint32_t show_time_ms);
+[[nodiscard]] Frame status_request(std::uint8_t address, std::uint8_t plan_byte);
+[[nodiscard]] Frame look_entry(std::uint8_t plan_byte, LookIndex index, const Look& look);
+[[nodiscard]] Frame identify(std::uint8_t address, std::uint8_t plan_byte, bool on);
+
+/// Body of a status answer.
+struct NodeStatus {
+  Sequence pending_sequence = 0;
+  std::uint16_t crc = 0;
+  std::uint8_t state = 0;
+  std::uint16_t boots = 0;
+  std::uint16_t dropped = 0;
+};
+[[nodiscard]] std::optional<NodeStatus> decode_status(const Frame& frame);
+/// CRC-16 of the looks that a receipt acknowledges.
+[[nodiscard]] std::optional<std::uint16_t> decode_receipt(const Frame& frame);
+
+/// Finds frames in any bytes: in step again after the next 0x00, whatever was heard before. Never holds more than one
+/// frame's length.
+class FrameReceiver {
+ public:
+  /// @return a frame when this byte has ended one that is right in length, version, command and CRC
+  std::optional<Frame> take(std::uint8_t byte);
+  /// Frames that were not right, since construction; empty ones do not count.
+  [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  bool too_long_ = false;
+  std::uint32_t dropped_ = 0;
+};
+
+}  // namespace footlight::drivers::footlight_serial

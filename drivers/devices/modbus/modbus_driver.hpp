@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "core/rig.hpp"
+#include "drivers/devices/modbus/marker_registers.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::drivers {
+
+/// Modbus markers (docs/wire-protocol.md, section 4) by a device profile, RTU or TCP.
+///
+/// One request at a time. On RTU latch, heartbeat and look table are broadcasts; over TCP, which has none, they go to
+/// each node in turn, heartbeats between other requests so that they never hold a latch up by more than one of them.
+/// What a profile lacks: without a latch register the looks are kept here and written, node by node, when the latch
+/// comes; without a heartbeat register there is no lease and `heartbeat` does nothing; without a status register
+/// nothing can be proved and `ask` tells nothing; without a look table `upload_look` does nothing. Exceptions 1-3, 5, 6
+/// and above are `rejected` with their code (whether to wait and try again is the bus loop's affair); 4 is tried once
+/// more first. An answer of another unit, function or length is `missed`.
+class ModbusDriver final : public Driver {
+ public:
+  enum class Line { rtu, tcp };
+
+  /// @param port borrowed for the life of the driver; it gives up on silent devices itself (Outcome::timeout)
+  ModbusDriver(ModbusPort& port, Line line, ModbusProfile profile, const std::vector<NodeAddress>& nodes,
+               std::uint8_t plan_byte);
+
+  [[nodiscard]] std::string_view language() const override { return "modbus"; }
+  [[nodiscard]] Capabilities capabilities() const override;
+  [[nodiscard]] Duration preload_time(int channels) const override;
+  [[nodiscard]] Duration status_time() const override;
+  /// RTU: one broadcast. TCP, and profiles without a latch: until the last node has it.
+  [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] bool ready() const override;
+
+  SendStatus start(Instant now) override;
+  SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
+                     Instant now) override;
+  SendStatus latch(Sequence sequence, Instant now) override;
+  SendStatus heartbeat(Duration show_time, Instant now) override;
+  SendStatus ask(const NodeAddress& node, Instant now) override;
+  SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  Instant step(Instant now, EventSink& events) override;
+
+ private:
+  enum class Purpose { preload, latch, late_write, heartbeat, status, look };
+  struct Job {
+    Purpose purpose = Purpose::status;
+    NodeIndex node;  ///< of a request to one unit
+    Sequence sequence = 0;
+    ModbusRequest request;
+    bool retried = false;
+  };
+  /// Looks that a device without a latch gets when the latch comes.
+  struct Kept {
+    NodeAddress node;
+    std::vector<LookIndex> looks;
+  };
+
+  SendStatus run(std::vector<Job> jobs, Instant now);
+  SendStatus submit(const Job& job, Instant now);
+  void submit_next(Instant now, EventSink& events);
+  void finish(const Job& job, const ModbusReply& reply, EventSink& events);
+  void tell_status(const Job& job, const ModbusReply& reply, EventSink& events);
+  void tell_bus(EventSink& events);
+  template <class MakeRequest>
+  [[nodiscard]] std::vector<Job> to_all(Purpose purpose, Sequence sequence, MakeRequest make_request) const;
+
+  ModbusPort& port_;
+  Line line_;
+  ModbusProfile profile_;
+  std::vector<NodeAddress> nodes_;
+  std::uint8_t plan_byte_;
+  std::map<NodeIndex, std::optional<std::uint16_t>> boots_;  ///< last known
+  std::map<NodeIndex, Kept> kept_;                           ///< profiles without a latch
+  std::vector<DeviceEvent> due_;                             ///< told by the next step
+  std::optional<Job> under_way_;
+  std::deque<Job> jobs_;        ///< the rest of an operation on all nodes
+  std::deque<Job> heartbeats_;  ///< TCP: between other requests
+  unsigned heartbeat_round_ = 0;
+  std::set<NodeIndex> silent_;  ///< the last request to them timed out
+  Instant expected_ = kNever;   ///< when the reply should be there
+  bool down_ = false;
+  bool down_told_ = false;
+};
+
+}  // namespace footlight::drivers

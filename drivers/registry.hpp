@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/rig.hpp"
+#include "drivers/driver.hpp"
+#include "drivers/transport.hpp"
+
+namespace footlight::drivers {
+
+/// A borrowed port of any kind; the port outlives the driver.
+using PortReference = std::variant<ByteStream*, CanPort*, ModbusPort*>;
+/// An owned port of any kind.
+using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>, std::unique_ptr<ModbusPort>>;
+
+[[nodiscard]] PortReference reference(const Port& port);
+
+/// The nodes of one bus as their driver wants them, in the order of the rig.
+[[nodiscard]] std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus);
+
+/// The driver of the bus's kind (table in registry.cpp). A Modbus bus without a profile gets that of our own marker.
+/// @param port of the kind that the bus needs: ByteStream for serial, CanPort for CAN, ModbusPort for both Modbus kinds
+///             (another kind is a programmer error)
+/// Errors: ErrorKind::input for addresses or channels that the bus cannot have.
+[[nodiscard]] Result<std::unique_ptr<Driver>> make_driver(const Bus& bus, std::vector<NodeAddress> nodes,
+                                                          std::uint8_t plan_byte, PortReference port);
+
+/// Opens the real wire that the bus's URL names: serial://, rtu://, tcp://, can:// (table in registry.cpp).
+/// Errors: ErrorKind::input for a URL that no transport takes, ErrorKind::device for what the machine refuses.
+[[nodiscard]] Result<Port> open_port(const Bus& bus);
+
+}  // namespace footlight::drivers
