@@ -42,13 +42,39 @@ struct Verdict {
   [[nodiscard]] bool valid() const { return violations == 0; }
 };
 
-/// Judges a plan by its marks alone, in closed form, and shares no code with the planner that made it. Clearances
-/// below 1.5 x the limit are exact; a pair that never comes nearer than that may be passed over. Complexity: O(M log M
-/// + near pairs) for M marks. Thread: reentrant.
+/// Judges a plan by its marks alone, in closed form, and shares no code with the planner that made it.
+///
+/// Walks and clearances are exact (tolerances: 1e-6 m of clearance, 1e-6 of speed, 1e-9 m from blocked cells); every
+/// pair nearer than 1.5 x its limit is measured, and min_clearance_m is the smallest of the whole show. A clearance is
+/// the stage's or the sum of two people's radii where that is more; a speed limit is the person's own, else that of the
+/// section in which the walk ends (a walk between two sections ends in the later one), else the stage's. A pair too
+/// close is counted once for each stretch between neighbouring mark instants, whoever's marks they are.
+///
+/// @param plan performers, radius_m, max_speed_mps and tracks of one length; everything else may be wrong
+/// Complexity: O(M log M + near pairs) for M marks. Uses all cores; the result does not depend on how many. Thread:
+/// reentrant.
 [[nodiscard]] Verdict validate(const Plan& plan);
 
-/// Largest lateness up to `cap_s` with which everybody may start and stop independently in [start, end] without coming
-/// too close.
+/// The two people who come nearest to each other in a stretch of the show.
+struct ClosestApproach {
+  double distance_m = 0;  ///< infinity for fewer than two people
+  PerformerIndex a;
+  PerformerIndex b;
+  Instant at;
+};
+
+/// Exact, in closed form; the earliest, then the first people among equals. @param start, end start <= end
+/// Complexity: O(N log marks + near pairs). Thread: reentrant.
+[[nodiscard]] ClosestApproach closest_approach(const Plan& plan, Instant start, Instant end);
+
+/// Largest lateness L up to `cap_s` with which everybody may independently start and stop late by up to L without a
+/// pair coming nearer than its clearance; 0 when it does without anybody being late.
+///
+/// Being late by l is walking one's way at s = t - l: all pairs of times (s, u) with |s - u| <= L are looked at of
+/// which the earlier lies in [start, end]; the later may lie in the next stretch, where one is still arriving and the
+/// other leaves already. Closed form for a pair, to cap_s / 2^20, rounded down. Falls when clearance or speeds rise.
+/// Complexity: O(N log marks + near pairs). Deterministic. Thread: reentrant.
+/// @param start, end start <= end  @param cap_s >= 0
 [[nodiscard]] double tolerated_lag_s(const Plan& plan, Instant start, Instant end, double cap_s = 2.0);
 
 }  // namespace footlight::planner
