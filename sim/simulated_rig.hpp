@@ -4,28 +4,14 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/clock.hpp"
-#include "core/result.hpp"
 #include "core/rig.hpp"
 #include "drivers/transport.hpp"
+#include "sim/faults.hpp"
 
 namespace footlight::sim {
-
-/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,reboot=2,dead=1"
-struct Faults {
-  double loss = 0;       ///< share of frames that a receiver does not hear, 0..0.3
-  double corrupt = 0;    ///< share of frames with a flipped bit, 0..0.3
-  double duplicate = 0;  ///< share of frames heard twice, 0..0.5
-  Duration delay{};      ///< most that an answer is late, on top of the turnaround
-  int reboot = 0;        ///< restarts of random nodes at random instants of the show
-  int dead = 0;          ///< nodes that never answer and never light
-  /// Errors name the part that is wrong and what is possible.
-  static Result<Faults> parse(std::string_view text);
-};
 
 /// Wire time of a bus since the start.
 struct BusUse {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "core/result.hpp"
+#include "core/rng.hpp"
+#include "core/time.hpp"
+
+namespace footlight::sim {
+
+/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,reboot=2,dead=1"
+struct Faults {
+  double loss = 0;       ///< share of frames that a receiver does not hear, 0..0.3
+  double corrupt = 0;    ///< share of frames with a flipped bit, 0..0.3
+  double duplicate = 0;  ///< share of frames heard twice, 0..0.5
+  Duration delay{};      ///< most that an answer is late, on top of the turnaround; 0..1 s
+  int reboot = 0;        ///< restarts of random nodes at random instants of the show, 0..10,000
+  int dead = 0;          ///< nodes that never answer and never light, 0..10,000
+  /// Shares are "5%" or "0.05", times carry us, ms or s. Errors name the part that is wrong and what is possible.
+  static Result<Faults> parse(std::string_view text);
+
+  friend bool operator==(const Faults&, const Faults&) = default;
+};
+
+/// The faults of one bus, from its own generator: what happens on one bus does not change the faults of another.
+class Chance {
+ public:
+  Chance(const Faults& faults, Rng rng) : faults_(faults), rng_(rng) {}
+
+  bool lost() { return happens(faults_.loss); }
+  bool corrupted() { return happens(faults_.corrupt); }
+  bool duplicated() { return happens(faults_.duplicate); }
+  /// How late an answer is, uniform in [0, delay].
+  Duration lateness() { return faults_.delay.count() == 0 ? Duration{} : up_to(faults_.delay); }
+  std::uint64_t below(std::uint64_t bound) { return rng_.below(bound); }
+  /// Uniform in [0, most].
+  Duration up_to(Duration most) {
+    return Duration(static_cast<Duration::rep>(rng_.below(static_cast<std::uint64_t>(most.count()) + 1)));
+  }
+
+ private:
+  bool happens(double share) { return share > 0 && rng_.uniform() < share; }
+
+  Faults faults_;
+  Rng rng_;
+};
+
+}  // namespace footlight::sim

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/markers/canopen_marker.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace footlight::sim {
+namespace {
+
+constexpr std::uint16_t kNmt = 0x000;
+constexpr std::uint16_t kSync = 0x080;
+constexpr std::uint16_t kMpdo = 0x1FF;
+constexpr std::uint16_t kControllerHeartbeat = 0x77F;
+constexpr std::uint8_t kOperational = 5;
+constexpr std::uint16_t kPduTooShort = 0x8210;  // CiA 301, table 26: PDO not processed due to length error
+constexpr std::uint8_t kGenericAndCommunicationError = 0x11;
+constexpr int kLooksPerPdo = 8;
+
+std::uint8_t low(std::uint16_t word) { return static_cast<std::uint8_t>(word & 0xFFU); }
+std::uint8_t high(std::uint16_t word) { return static_cast<std::uint8_t>(word >> 8U); }
+
+}  // namespace
+
+void CanopenMarker::power_on() {
+  nmt_ = NmtState::pre_operational;
+  errors_ = 0;
+}
+
+CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, Instant now) {
+  if (frame.length > 8) return Reaction::none;
+  model_.settle(now);
+  if (frame.id == kNmt) return manage(frame, now);
+  if (frame.id == kControllerHeartbeat) {
+    if (frame.length == 1 && frame.data[0] == kOperational) model_.heartbeat(now);
+    return Reaction::none;
+  }
+  if (frame.id == kMpdo) {
+    if (nmt_ != NmtState::stopped) take_mpdo(frame);
+    return Reaction::none;
+  }
+  if (nmt_ != NmtState::operational) return Reaction::none;
+  if (frame.id == kSync) {
+    if (frame.length != 1 || frame.data[0] == 0 || frame.data[0] > kHighestSequence) return Reaction::none;
+    model_.take_staged(frame.data[0], now);
+    return Reaction::status;
+  }
+  const int function = frame.id >> 7;
+  const bool is_pdo = function == 4 || function == 6 || function == 8 || function == 10;  // 0x200, 0x300, 0x400, 0x500
+  if (!is_pdo || (frame.id & 0x7FU) != id_) return Reaction::none;
+  return take_pdo(function / 2 - 2, frame);
+}
+
+CanopenMarker::Reaction CanopenMarker::manage(const drivers::CanFrame& frame, Instant now) {
+  if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != id_)) return Reaction::none;
+  switch (frame.data[0]) {
+    case 0x01:
+      nmt_ = NmtState::operational;
+      return Reaction::none;
+    case 0x02:
+      nmt_ = NmtState::stopped;
+      return Reaction::none;
+    case 0x80:
+      nmt_ = NmtState::pre_operational;
+      return Reaction::none;
+    case 0x81:
+      model_.power_on(now);
+      power_on();
+      return Reaction::boot_up;
+    case 0x82:
+      nmt_ = NmtState::pre_operational;
+      return Reaction::boot_up;
+    default:
+      return Reaction::none;
+  }
+}
+
+CanopenMarker::Reaction CanopenMarker::take_pdo(int number, const drivers::CanFrame& frame) {
+  const int first = number * kLooksPerPdo;
+  const int wanted = std::min(kLooksPerPdo, model_.channels() - first);
+  if (wanted <= 0) return Reaction::none;
+  if (frame.length < wanted) return Reaction::emergency;
+  model_.stage(first, std::span(frame.data).first(static_cast<std::size_t>(wanted)));
+  return Reaction::none;
+}
+
+void CanopenMarker::take_mpdo(const drivers::CanFrame& frame) {
+  const auto& data = frame.data;
+  const bool to_me = data[0] == 0x80 || data[0] == (0x80 | id_);  // destination address mode, all nodes or this one
+  if (frame.length != 8 || !to_me || data[2] != 0x21) return;
+  if (data[1] == 0x00) model_.set_colour(data[3], Colour{data[6], data[5], data[4]});
+  if (data[1] == 0x01) model_.set_effect(data[3], data[4], data[5]);
+}
+
+drivers::CanFrame CanopenMarker::status() const {
+  const std::uint16_t crc = model_.crc();
+  return {static_cast<std::uint16_t>(0x180 + id_),
+          8,
+          {model_.shown_sequence(), static_cast<std::uint8_t>(model_.state()), low(crc), high(crc), low(model_.boots()),
+           high(model_.boots()), low(errors_), high(errors_)}};
+}
+
+drivers::CanFrame CanopenMarker::heartbeat() const {
+  return {static_cast<std::uint16_t>(0x700 + id_), 1, {static_cast<std::uint8_t>(nmt_)}};
+}
+
+drivers::CanFrame CanopenMarker::boot_up() const { return {static_cast<std::uint16_t>(0x700 + id_), 1, {}}; }
+
+drivers::CanFrame CanopenMarker::length_emergency() const {
+  return {static_cast<std::uint16_t>(0x080 + id_),
+          8,
+          {low(kPduTooShort), high(kPduTooShort), kGenericAndCommunicationError}};
+}
+
+}  // namespace footlight::sim

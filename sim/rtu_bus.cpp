@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/rtu_bus.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/modbus_frames.hpp"
+
+namespace footlight::sim {
+namespace {
+
+using drivers::ModbusReply;
+using drivers::ModbusRequest;
+
+constexpr int kBitsPerCharacter = 11;
+constexpr int kFastestCounted = 19'200;
+constexpr Duration kFixedSilence = microseconds(1750);
+constexpr Duration kShortestTurnaround = microseconds(500);
+constexpr Duration kLongestTurnaround = milliseconds(5);
+constexpr std::size_t kAddressAndCheckSum = 3;
+constexpr std::size_t kMostUnread = 16;
+
+}  // namespace
+
+Duration RtuBus::silence(const Bus& bus) {
+  if (bus.bits_per_second > kFastestCounted) return kFixedSilence;
+  return bit_time(77, 2 * std::int64_t{bus.bits_per_second});  // 3.5 x 11 bits
+}
+
+RtuBus::RtuBus(const Bus& bus, Surroundings surroundings)
+    : SimulatedBus(bus, std::move(surroundings)),
+      silence_(silence(bus)),
+      line_(bus_, kBitsPerCharacter, silence_, around_, use_, *this) {}
+
+std::size_t RtuBus::add(std::unique_ptr<SimulatedNode> node) {
+  markers_.emplace_back(node->address(), bus_.profile.value_or(footlight_profile()), node->model());
+  answers_.emplace_back();
+  missed_.push_back(false);
+  nodes_.push_back(std::move(node));
+  return nodes_.size() - 1;
+}
+
+void RtuBus::power_off(std::size_t slot) {
+  nodes_[slot]->power_off();
+  ++answers_[slot].generation;
+  line_.cut(static_cast<int>(slot));
+}
+
+void RtuBus::power_on(std::size_t slot) {
+  nodes_[slot]->power_on();
+  markers_[slot].power_on();
+}
+
+drivers::SendStatus RtuBus::submit(const ModbusRequest& request) {
+  const auto pdu = request_pdu(request);
+  if (busy()) return drivers::SendStatus::busy;
+  request_ = request;
+  ++generation_;
+  reply_.reset();
+  phase_ = Phase::sending;
+  line_.say(kController, rtu_frame(request.unit, pdu), std::max(around_.world.now(), quiet_at_));
+  return drivers::SendStatus::accepted;
+}
+
+std::optional<ModbusReply> RtuBus::poll() { return std::exchange(reply_, std::nullopt); }
+
+Duration RtuBus::wire_time(const ModbusRequest& request) const {
+  const Duration out = line_.time_of(request_pdu(request).size() + kAddressAndCheckSum);
+  if (request.unit == 0) return out + std::max(kBroadcastGap, silence_);
+  return out + std::max(kLongestTurnaround, silence_) + line_.time_of(reply_pdu_size(request) + kAddressAndCheckSum) +
+         silence_;
+}
+
+void RtuBus::draw_losses(int speaker, std::string& note) {
+  if (speaker != kController) {
+    controller_missed_ = misses("controller", note);
+    return;
+  }
+  for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
+    const bool concerned = request_.unit == 0 || request_.unit == nodes_[slot]->address();
+    missed_[slot] = concerned && nodes_[slot]->powered() && misses(nodes_[slot]->name(), note);
+  }
+}
+
+void RtuBus::heard(int speaker, std::span<const std::uint8_t> bytes, bool copy) {
+  quiet_at_ = around_.world.now() + silence_;
+  if (speaker == kController) {
+    if (copy) {
+      heard_twice_ = true;
+      return;
+    }
+    in_air_.assign(bytes.begin(), bytes.end());
+    heard_twice_ = false;
+    around_.world.schedule(quiet_at_, *this, token(kNodesHear, 0, generation_));
+    request_is_out();
+    return;
+  }
+  // Nodes hear each other's replies as well; none has the address of another, so nothing comes of it.
+  if (!controller_missed_) take(bytes);
+}
+
+void RtuBus::request_is_out() {
+  const Instant now = around_.world.now();
+  if (request_.unit == 0) {
+    phase_ = Phase::broadcast;
+    around_.world.schedule(now + std::max(kBroadcastGap, silence_), *this, token(kBroadcastOver, 0, generation_));
+    return;
+  }
+  phase_ = Phase::waiting;
+  around_.world.schedule(now + kReplyTimeout, *this, token(kGiveUp, 0, generation_));
+  while (phase_ == Phase::waiting && !unread_.empty()) {
+    const auto frame = std::move(unread_.front());
+    unread_.pop_front();
+    take(frame);
+  }
+}
+
+void RtuBus::act(std::uint64_t token_of_event) {
+  const std::size_t slot = slot_of(token_of_event);
+  switch (kind_of(token_of_event)) {
+    case kNodesHear:
+      nodes_hear();
+      return;
+    case kNodeAnswers:
+      if (answers_[slot].generation != generation_of(token_of_event)) return;
+      line_.say(static_cast<int>(slot), std::exchange(answers_[slot].bytes, {}), around_.world.now());
+      return;
+    case kGiveUp:
+      give_up(generation_of(token_of_event));
+      return;
+    default:
+      phase_ = Phase::idle;
+      unread_.clear();
+      return;
+  }
+}
+
+void RtuBus::nodes_hear() {
+  for (int times = heard_twice_ ? 2 : 1; times > 0; --times) {
+    for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
+      if (nodes_[slot]->powered() && !missed_[slot]) node_hears(slot);
+    }
+  }
+}
+
+void RtuBus::node_hears(std::size_t slot) {
+  auto answer = markers_[slot].receive_rtu(in_air_, around_.world.now());
+  nodes_[slot]->after_receiving();
+  if (answer.empty()) return;
+  const Duration turnaround =
+      kShortestTurnaround + around_.timing.up_to(kLongestTurnaround - kShortestTurnaround) + around_.faults.lateness();
+  answers_[slot].bytes = std::move(answer);
+  // The turnaround runs from the last bit of the request, and never ends before the silence has been heard.
+  around_.world.schedule(around_.world.now() + std::max(turnaround, silence_) - silence_, *this,
+                         token(kNodeAnswers, slot, ++answers_[slot].generation));
+}
+
+void RtuBus::take(std::span<const std::uint8_t> frame) {
+  if (phase_ != Phase::waiting) {
+    if (unread_.size() < kMostUnread) unread_.emplace_back(frame.begin(), frame.end());
+    return;
+  }
+  if (auto reply = rtu_reply(request_, frame)) conclude(std::move(*reply));
+}
+
+void RtuBus::give_up(std::uint32_t generation) {
+  if (phase_ != Phase::waiting || generation != generation_) return;
+  const Instant quiet = line_.quiet_at();
+  if (quiet > around_.world.now()) {  // a reply has begun in time and is heard to its end
+    around_.world.schedule(quiet, *this, token(kGiveUp, 0, generation_));
+    return;
+  }
+  conclude({ModbusReply::Outcome::timeout, request_.unit, request_.function, 0, {}});
+}
+
+void RtuBus::conclude(ModbusReply reply) {
+  phase_ = Phase::idle;
+  reply_ = std::move(reply);
+}
+
+}  // namespace footlight::sim

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/simulated_rig.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/check.hpp"
+#include "core/rng.hpp"
+#include "sim/can_bus.hpp"
+#include "sim/rtu_bus.hpp"
+#include "sim/serial_bus.hpp"
+#include "sim/simulated_bus.hpp"
+#include "sim/tcp_bus.hpp"
+#include "sim/trace.hpp"
+#include "sim/world.hpp"
+
+namespace footlight::sim {
+namespace {
+
+constexpr Duration kOffTime = milliseconds(300);
+
+// Streams of the rig's generator; each bus splits its own in two.
+constexpr std::uint64_t kDeadStream = 1'000'000;
+constexpr std::uint64_t kRebootStream = 1'000'001;
+constexpr std::uint64_t kFaultStream = 0;
+constexpr std::uint64_t kTimingStream = 1;
+
+std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, Surroundings surroundings) {
+  switch (bus.kind) {
+    case BusKind::serial:
+      return std::make_unique<SerialBus>(bus, std::move(surroundings));
+    case BusKind::modbus_rtu:
+      return std::make_unique<RtuBus>(bus, std::move(surroundings));
+    case BusKind::modbus_tcp:
+      return std::make_unique<TcpBus>(bus, std::move(surroundings));
+    case BusKind::can:
+      return std::make_unique<CanBus>(bus, std::move(surroundings));
+  }
+  FL_CHECK(false);
+}
+
+bool has_lease(const Bus& bus) {
+  const bool modbus = bus.kind == BusKind::modbus_rtu || bus.kind == BusKind::modbus_tcp;
+  return !modbus || !bus.profile || bus.profile->heartbeat_register.has_value();
+}
+
+std::vector<NodeIndex> draw_dead(std::size_t nodes, int wanted, Rng rng) {
+  std::vector<NodeIndex> all;
+  for (std::size_t i = 0; i < nodes; ++i) all.push_back(NodeIndex::of(i));
+  const std::size_t count = std::min(nodes, static_cast<std::size_t>(wanted));
+  for (std::size_t i = 0; i < count; ++i) std::swap(all[i], all[i + rng.below(nodes - i)]);
+  all.resize(count);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<Reboot> draw_reboots(std::size_t nodes, const std::vector<NodeIndex>& dead, int wanted, Instant from,
+                                 Duration length, Rng rng) {
+  std::vector<NodeIndex> alive;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (!std::binary_search(dead.begin(), dead.end(), NodeIndex::of(i))) alive.push_back(NodeIndex::of(i));
+  }
+  std::vector<Reboot> reboots;
+  if (alive.empty() || length <= Duration{}) return reboots;
+  for (int i = 0; i < wanted; ++i) {
+    const NodeIndex node = alive[rng.below(alive.size())];
+    const auto after = static_cast<Duration::rep>(rng.below(static_cast<std::uint64_t>(length.count())));
+    reboots.push_back({node, from + Duration(after)});
+  }
+  std::stable_sort(reboots.begin(), reboots.end(), [](const Reboot& a, const Reboot& b) { return a.at < b.at; });
+  return reboots;
+}
+
+}  // namespace
+
+/// Also the hand on the switches: its events take the power from nodes and give it back.
+struct SimulatedRig::State final : Actor {
+  struct Place {
+    SimulatedBus* bus;
+    std::size_t slot;
+  };
+
+  State(const Rig& rig_of_show, ManualClock& clock, std::ostream* out)
+      : rig(rig_of_show), world(clock), trace(out), supply(rig_of_show.nodes.size()) {}
+
+  void act(std::uint64_t token) override {
+    const auto [bus, slot] = places.at(token / 2);
+    Instant& back_at = supply[token / 2];
+    if (token % 2 == 0) {
+      bus->power_off(slot);
+      back_at = world.now() + kOffTime;
+      world.schedule(back_at, *this, token + 1);
+    } else if (world.now() == back_at) {  // not switched off once more meanwhile
+      bus->power_on(slot);
+    }
+  }
+
+  SimulatedBus& bus(BusIndex index, std::initializer_list<BusKind> kinds) {
+    SimulatedBus& found = *buses.at(index.at());
+    FL_CHECK(std::find(kinds.begin(), kinds.end(), found.bus().kind) != kinds.end());
+    return found;
+  }
+
+  Rig rig;
+  World world;
+  Trace trace;
+  std::vector<Instant> supply;  ///< by node: when the power comes back
+  std::vector<std::unique_ptr<SimulatedBus>> buses;
+  std::vector<Place> places;  ///< by node
+  std::vector<Reboot> reboots;
+  std::vector<NodeIndex> dead;
+};
+
+SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, Instant show_start,
+                           Duration show_length, ManualClock& clock, std::ostream* trace)
+    : state_(std::make_unique<State>(rig, clock, trace)) {
+  State& state = *state_;
+  const Rng rng(seed);
+  for (std::size_t i = 0; i < state.rig.buses.size(); ++i) {
+    const Rng own = rng.split(i);
+    state.buses.push_back(make_bus(
+        state.rig.buses[i],
+        {state.world, state.trace, Chance(faults, own.split(kFaultStream)), Chance(faults, own.split(kTimingStream))}));
+  }
+  state.dead = draw_dead(state.rig.nodes.size(), faults.dead, rng.split(kDeadStream));
+  for (std::size_t i = 0; i < state.rig.nodes.size(); ++i) {
+    const Node& node = state.rig.nodes[i];
+    SimulatedBus& bus = *state.buses.at(node.bus.at());
+    const bool is_dead = std::binary_search(state.dead.begin(), state.dead.end(), NodeIndex::of(i));
+    const std::size_t slot = bus.add(
+        std::make_unique<SimulatedNode>(node, bus.bus().name, has_lease(bus.bus()), is_dead, state.world, state.trace));
+    state.places.push_back({&bus, slot});
+  }
+  for (auto& bus : state.buses) bus->begin();
+  state.reboots = draw_reboots(state.rig.nodes.size(), state.dead, faults.reboot, show_start, show_length,
+                               rng.split(kRebootStream));
+  for (const Reboot& reboot : state.reboots) {
+    FL_CHECK(reboot.at >= clock.now());
+    state.world.schedule(reboot.at, state, 2 * std::uint64_t{reboot.node.value()});
+  }
+}
+
+SimulatedRig::~SimulatedRig() = default;
+
+drivers::ByteStream& SimulatedRig::serial(BusIndex bus) {
+  return dynamic_cast<drivers::ByteStream&>(state_->bus(bus, {BusKind::serial}));
+}
+
+drivers::CanPort& SimulatedRig::can(BusIndex bus) {
+  return dynamic_cast<drivers::CanPort&>(state_->bus(bus, {BusKind::can}));
+}
+
+drivers::ModbusPort& SimulatedRig::modbus(BusIndex bus) {
+  return dynamic_cast<drivers::ModbusPort&>(state_->bus(bus, {BusKind::modbus_rtu, BusKind::modbus_tcp}));
+}
+
+Instant SimulatedRig::next_event() const { return state_->world.next(); }
+
+void SimulatedRig::advance_to(Instant instant) { state_->world.advance_to(instant); }
+
+LookIndex SimulatedRig::shown(NodeIndex node, int channel) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  FL_CHECK(channel >= 0 && channel < static_cast<int>(state_->rig.nodes[node.at()].channels.size()));
+  return bus->node(slot).shown(channel);
+}
+
+BusUse SimulatedRig::use(BusIndex bus) const { return state_->buses.at(bus.at())->use(); }
+
+const std::vector<Reboot>& SimulatedRig::reboots() const { return state_->reboots; }
+
+const std::vector<NodeIndex>& SimulatedRig::dead() const { return state_->dead; }
+
+}  // namespace footlight::sim
