@@ -84,7 +84,8 @@ class Driver {
   /// True when another operation would be accepted now.
   [[nodiscard]] virtual bool ready() const = 0;
 
-  // Operations: accepted means under way; what comes of it is told by events.
+  // Operations: accepted means under way; what comes of it is told by events of the following steps. Step once after
+  // each, which tells when to step next.
   virtual SendStatus start(Instant now) = 0;  ///< wakes the nodes of the bus (CANopen NMT start; nothing elsewhere)
   /// @param looks as many as the node has channels
   virtual SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,

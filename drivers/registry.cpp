@@ -9,11 +9,17 @@
 #include "drivers/devices/canopen/canopen_driver.hpp"
 #include "drivers/devices/footlight_serial/serial_driver.hpp"
 #include "drivers/devices/modbus/modbus_driver.hpp"
+#include "drivers/transports/can_socket.hpp"
+#include "drivers/transports/modbus_port.hpp"
+#include "drivers/transports/serial_stream.hpp"
+#include "drivers/transports/urls.hpp"
 
 namespace footlight::drivers {
 namespace {
 
 using Nodes = std::vector<NodeAddress>;
+constexpr int kModbusTcpPort = 502;
+
 using DriverPointer = std::unique_ptr<Driver>;
 
 template <class PortType>
@@ -31,10 +37,9 @@ DriverPointer make_canopen(const Bus& /*bus*/, const Nodes& nodes, std::uint8_t 
   return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes);
 }
 
-template <ModbusDriver::Line line>
 DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, std::uint8_t plan_byte, PortReference port) {
   const ModbusProfile profile = bus.profile ? *bus.profile : modbus::footlight_marker();
-  return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), line, profile, nodes, plan_byte);
+  return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), profile, nodes, plan_byte);
 }
 
 struct Language {
@@ -46,8 +51,8 @@ struct Language {
 // A new language is a line here, a folder in devices/ and its sources in CMakeLists.txt.
 constexpr std::array kLanguages{
     Language{BusKind::serial, 254, make_serial},
-    Language{BusKind::modbus_rtu, 247, make_modbus<ModbusDriver::Line::rtu>},
-    Language{BusKind::modbus_tcp, 247, make_modbus<ModbusDriver::Line::tcp>},
+    Language{BusKind::modbus_rtu, 247, make_modbus},
+    Language{BusKind::modbus_tcp, 247, make_modbus},
     Language{BusKind::can, canopen::kLastNode, make_canopen},
 };
 
@@ -67,6 +72,54 @@ Status<> check_nodes(const Bus& bus, const Nodes& nodes, int last_address) {
     }
   }
   return Done{};
+}
+
+template <class PortPointer>
+Result<Port> as_port(Result<PortPointer> opened) {
+  if (!opened) return std::move(opened).error();
+  return Port(std::move(opened).value());
+}
+
+Result<Port> open_serial_bus(const Bus& bus, const std::string& place, const Nodes& /*nodes*/) {
+  return as_port(open_serial(place, bus.bits_per_second));
+}
+
+Result<Port> open_rtu_bus(const Bus& bus, const std::string& place, const Nodes& /*nodes*/) {
+  return as_port(open_modbus_rtu(place, bus.bits_per_second));
+}
+
+Result<Port> open_tcp_bus(const Bus& /*bus*/, const std::string& place, const Nodes& nodes) {
+  const auto where = parse_host_and_port(place, kModbusTcpPort);
+  if (!where) return where.error();
+  std::vector<std::uint8_t> units;
+  for (const NodeAddress& node : nodes) units.push_back(node.address);
+  return as_port(open_modbus_tcp(where->host, where->port, std::move(units)));
+}
+
+Result<Port> open_can_bus(const Bus& bus, const std::string& place, const Nodes& /*nodes*/) {
+  return as_port(open_can(place, bus.bits_per_second));
+}
+
+struct Transport {
+  std::string_view scheme;
+  BusKind kind;
+  std::string_view example;
+  Result<Port> (*open)(const Bus&, const std::string& place, const Nodes&);
+};
+
+// A new transport is a line here and its sources in CMakeLists.txt.
+constexpr std::array kTransports{
+    Transport{"serial", BusKind::serial, "serial:///dev/serial/by-id/...", open_serial_bus},
+    Transport{"rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/...", open_rtu_bus},
+    Transport{"tcp", BusKind::modbus_tcp, "tcp://host:502", open_tcp_bus},
+    Transport{"can", BusKind::can, "can://can0", open_can_bus},
+};
+
+std::string example_for(BusKind kind) {
+  for (const Transport& transport : kTransports) {
+    if (transport.kind == kind) return std::string(transport.example);
+  }
+  return {};
 }
 
 }  // namespace
@@ -95,6 +148,25 @@ Result<DriverPointer> make_driver(const Bus& bus, std::vector<NodeAddress> nodes
     return language.make(bus, nodes, plan_byte, port);
   }
   return internal_error("bus \"" + bus.name + "\": no language for " + std::string(to_text(bus.kind)));
+}
+
+Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes) {
+  const auto wrong = [&](const std::string& what, const std::string& hint) {
+    return input_error("bus \"" + bus.name + "\": url \"" + bus.url + "\": " + what + " (" + hint + ")");
+  };
+  std::string examples;
+  for (const Transport& transport : kTransports) {
+    if (transport.scheme == scheme_of(bus.url)) {
+      if (transport.kind != bus.kind)
+        return wrong("not for a bus of kind " + std::string(to_text(bus.kind)), example_for(bus.kind));
+      auto port = transport.open(bus, std::string(place_of(bus.url)), nodes);
+      if (!port) return Error{port.error().kind, "bus \"" + bus.name + "\": " + port.error().message};
+      return port;
+    }
+    examples += (examples.empty() ? "" : ", ") + std::string(transport.example);
+  }
+  if (bus.simulated()) return wrong("a simulated bus has no wire to open", examples);
+  return wrong("no transport of that name", examples);
 }
 
 }  // namespace footlight::drivers

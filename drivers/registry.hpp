@@ -31,7 +31,8 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
                                                           std::uint8_t plan_byte, PortReference port);
 
 /// Opens the real wire that the bus's URL names: serial://, rtu://, tcp://, can:// (table in registry.cpp).
+/// @param nodes of the bus: over TCP a broadcast goes to each of them
 /// Errors: ErrorKind::input for a URL that no transport takes, ErrorKind::device for what the machine refuses.
-[[nodiscard]] Result<Port> open_port(const Bus& bus);
+[[nodiscard]] Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes);
 
 }  // namespace footlight::drivers

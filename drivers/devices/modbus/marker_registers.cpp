@@ -47,6 +47,7 @@ ModbusRequest preload(const ModbusProfile& profile, std::uint8_t unit, std::uint
 
 ModbusRequest latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence) {
   FL_CHECK(profile.latch_register.has_value());
+  if (!profile.has_preload_sequence) return write(unit, profile.latch_register.value(), {sequence});
   const std::uint16_t first = word(plan_byte, sequence);
   return write(unit, profile.latch_register.value(),
                {first, static_cast<std::uint16_t>(0x5A5AU ^ first), static_cast<std::uint16_t>(0xA5A5U ^ first)});

@@ -24,7 +24,8 @@ inline constexpr std::uint16_t kStatusRegisters = 6;
 /// Sequence and plan byte (where the profile has them), then the looks. @param looks 1..32, channel 0 first
 [[nodiscard]] ModbusRequest preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
                                     Sequence sequence, std::span<const LookIndex> looks);
-/// The three guarded words. @param profile with a latch register
+/// The three guarded words; for a profile without preload sequence the sequence alone. @param profile with a latch
+/// register
 [[nodiscard]] ModbusRequest latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
                                   Sequence sequence);
 /// @param profile with a heartbeat register

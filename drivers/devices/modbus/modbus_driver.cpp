@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/modbus/modbus_driver.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/check.hpp"
@@ -12,14 +11,13 @@ namespace {
 constexpr std::uint8_t kBroadcast = 0;
 constexpr std::uint8_t kDeviceFailure = 4;           // the only exception that is tried again at once
 constexpr Duration kPollInterval = milliseconds(1);  // for a reply that is later than it should be
-constexpr unsigned kRoundsForSilent = 4;  // who does not answer gets one heartbeat in so many: each costs a time-out
-constexpr std::uint8_t kAnyUnit = 1;      // for budgets
+constexpr std::uint8_t kAnyUnit = 1;                 // for budgets
 
 }  // namespace
 
-ModbusDriver::ModbusDriver(ModbusPort& port, Line line, ModbusProfile profile, const std::vector<NodeAddress>& nodes,
+ModbusDriver::ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::vector<NodeAddress>& nodes,
                            std::uint8_t plan_byte)
-    : port_(port), line_(line), profile_(std::move(profile)), nodes_(nodes), plan_byte_(plan_byte) {
+    : port_(port), profile_(std::move(profile)), nodes_(nodes), plan_byte_(plan_byte) {
   FL_CHECK(profile_.looks_per_register == 1 || profile_.looks_per_register == 2);
   for (const NodeAddress& node : nodes_) FL_CHECK(node.address >= 1 && node.address <= 247);
 }
@@ -43,14 +41,9 @@ Duration ModbusDriver::status_time() const {
 }
 
 Duration ModbusDriver::latch_time() const {
-  if (profile_.latch_register && line_ == Line::rtu) {
-    return port_.wire_time(modbus::latch(profile_, kBroadcast, plan_byte_, 1));
-  }
+  if (profile_.latch_register) return port_.wire_time(modbus::latch(profile_, kBroadcast, plan_byte_, 1));
   Duration sum{};
-  for (const NodeAddress& node : nodes_) {
-    sum += profile_.latch_register ? port_.wire_time(modbus::latch(profile_, node.address, plan_byte_, 1))
-                                   : preload_time(node.channels);
-  }
+  for (const NodeAddress& node : nodes_) sum += preload_time(node.channels);
   return sum;
 }
 
@@ -76,8 +69,7 @@ SendStatus ModbusDriver::preload(const NodeAddress& node, Sequence sequence, std
 SendStatus ModbusDriver::latch(Sequence sequence, Instant now) {
   FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
   if (profile_.latch_register) {
-    return run(to_all(Purpose::latch, sequence,
-                      [&](std::uint8_t unit) { return modbus::latch(profile_, unit, plan_byte_, sequence); }),
+    return run({{Purpose::latch, NodeIndex{}, sequence, modbus::latch(profile_, kBroadcast, plan_byte_, sequence)}},
                now);
   }
   std::vector<Job> writes;
@@ -93,17 +85,7 @@ SendStatus ModbusDriver::latch(Sequence sequence, Instant now) {
 SendStatus ModbusDriver::heartbeat(Duration show_time, Instant now) {
   if (!profile_.heartbeat_register) return SendStatus::accepted;
   const auto show_ms = static_cast<std::uint32_t>(show_time / milliseconds(1));
-  std::vector<Job> jobs =
-      to_all(Purpose::heartbeat, 0, [&](std::uint8_t unit) { return modbus::heartbeat(profile_, unit, show_ms); });
-  if (line_ == Line::rtu) return run(std::move(jobs), now);
-  if (jobs.empty()) return SendStatus::accepted;
-  if (down_) return run({jobs.front()}, now);             // one finds out whether the wire is back
-  if (!heartbeats_.empty()) return SendStatus::accepted;  // the last round is still being sent: this one is in it
-  const bool all = heartbeat_round_++ % kRoundsForSilent == 0;
-  for (const Job& job : jobs) {
-    if (all || !silent_.contains(job.node)) heartbeats_.push_back(job);
-  }
-  return SendStatus::accepted;
+  return run({{Purpose::heartbeat, NodeIndex{}, 0, modbus::heartbeat(profile_, kBroadcast, show_ms)}}, now);
 }
 
 SendStatus ModbusDriver::ask(const NodeAddress& node, Instant now) {
@@ -113,20 +95,7 @@ SendStatus ModbusDriver::ask(const NodeAddress& node, Instant now) {
 
 SendStatus ModbusDriver::upload_look(LookIndex index, const Look& look, Instant now) {
   if (!profile_.look_table_register) return SendStatus::accepted;
-  return run(
-      to_all(Purpose::look, 0, [&](std::uint8_t unit) { return modbus::look_entry(profile_, unit, index, look); }),
-      now);
-}
-
-template <class MakeRequest>
-std::vector<ModbusDriver::Job> ModbusDriver::to_all(Purpose purpose, Sequence sequence,
-                                                    MakeRequest make_request) const {
-  if (line_ == Line::rtu) return {{purpose, NodeIndex{}, sequence, make_request(kBroadcast)}};
-  std::vector<Job> jobs;
-  for (const NodeAddress& node : nodes_) jobs.push_back({purpose, node.node, sequence, make_request(node.address)});
-  // Who does not answer comes last, so that its time-out keeps nobody waiting.
-  std::stable_partition(jobs.begin(), jobs.end(), [&](const Job& job) { return !silent_.contains(job.node); });
-  return jobs;
+  return run({{Purpose::look, NodeIndex{}, 0, modbus::look_entry(profile_, kBroadcast, index, look)}}, now);
 }
 
 SendStatus ModbusDriver::run(std::vector<Job> jobs, Instant now) {
@@ -150,44 +119,33 @@ SendStatus ModbusDriver::submit(const Job& job, Instant now) {
 Instant ModbusDriver::step(Instant now, EventSink& events) {
   for (const DeviceEvent& event : due_) events.on_event(event);
   due_.clear();
-  bool heartbeat_ended = false;
+  tell_bus(events);
   if (under_way_) {
     const std::optional<ModbusReply> reply = port_.poll();
     const bool broadcast_over = under_way_->request.unit == kBroadcast && !port_.busy();
     if (!reply && !broadcast_over) return expected_ > now ? expected_ : now + kPollInterval;
     const Job job = *std::exchange(under_way_, std::nullopt);
-    heartbeat_ended = job.purpose == Purpose::heartbeat;
     if (reply && job.request.unit != kBroadcast) finish(job, *reply, events);
   }
-  // After a heartbeat the line is left to other operations until the next call; after those a heartbeat is first.
-  const bool leave_free = heartbeat_ended && jobs_.empty();
-  if (!under_way_ && !leave_free) submit_next(now, events);
+  submit_next(now, events);
   tell_bus(events);
   if (under_way_) return expected_ > now ? expected_ : now + kPollInterval;
-  return jobs_.empty() && heartbeats_.empty() ? kNever : now;
+  return jobs_.empty() ? kNever : now + kPollInterval;
 }
 
 void ModbusDriver::submit_next(Instant now, EventSink& events) {
-  if (port_.busy()) return;
-  std::deque<Job>& queue = jobs_.empty() ? heartbeats_ : jobs_;
-  if (queue.empty()) return;
-  const SendStatus status = submit(queue.front(), now);
+  if (jobs_.empty() || port_.busy()) return;
+  const SendStatus status = submit(jobs_.front(), now);
   if (status == SendStatus::accepted) {
-    queue.pop_front();
+    jobs_.pop_front();
   } else if (status == SendStatus::down) {
     for (const Job& job : jobs_) events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
     jobs_.clear();
-    heartbeats_.clear();
   }
 }
 
 void ModbusDriver::finish(const Job& job, const ModbusReply& reply, EventSink& events) {
   DeviceEvent event{DeviceEvent::Kind::missed, job.node, job.sequence};
-  if (reply.outcome == ModbusReply::Outcome::timeout) {
-    silent_.insert(job.node);
-  } else {
-    silent_.erase(job.node);
-  }
   const bool fits = reply.unit == job.request.unit && reply.function == job.request.function;
   if (reply.outcome == ModbusReply::Outcome::exception && fits) {
     if (reply.exception_code == kDeviceFailure && !job.retried) {

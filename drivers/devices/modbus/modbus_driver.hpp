@@ -5,7 +5,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "core/rig.hpp"
@@ -16,8 +15,8 @@ namespace footlight::drivers {
 
 /// Modbus markers (docs/wire-protocol.md, section 4) by a device profile, RTU or TCP.
 ///
-/// One request at a time. On RTU latch, heartbeat and look table are broadcasts; over TCP, which has none, they go to
-/// each node in turn, heartbeats between other requests so that they never hold a latch up by more than one of them.
+/// One request at a time. Latch, heartbeat and look table are broadcasts (unit 0); over TCP, which has none, the port
+/// sends them to each node in turn.
 /// What a profile lacks: without a latch register the looks are kept here and written, node by node, when the latch
 /// comes; without a heartbeat register there is no lease and `heartbeat` does nothing; without a status register
 /// nothing can be proved and `ask` tells nothing; without a look table `upload_look` does nothing. Exceptions 1-3, 5, 6
@@ -25,17 +24,14 @@ namespace footlight::drivers {
 /// more first. An answer of another unit, function or length is `missed`.
 class ModbusDriver final : public Driver {
  public:
-  enum class Line { rtu, tcp };
-
   /// @param port borrowed for the life of the driver; it gives up on silent devices itself (Outcome::timeout)
-  ModbusDriver(ModbusPort& port, Line line, ModbusProfile profile, const std::vector<NodeAddress>& nodes,
-               std::uint8_t plan_byte);
+  ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte);
 
   [[nodiscard]] std::string_view language() const override { return "modbus"; }
   [[nodiscard]] Capabilities capabilities() const override;
   [[nodiscard]] Duration preload_time(int channels) const override;
   [[nodiscard]] Duration status_time() const override;
-  /// RTU: one broadcast. TCP, and profiles without a latch: until the last node has it.
+  /// Until the last node has it; without a latch register every node's preload.
   [[nodiscard]] Duration latch_time() const override;
   [[nodiscard]] bool ready() const override;
 
@@ -69,11 +65,8 @@ class ModbusDriver final : public Driver {
   void finish(const Job& job, const ModbusReply& reply, EventSink& events);
   void tell_status(const Job& job, const ModbusReply& reply, EventSink& events);
   void tell_bus(EventSink& events);
-  template <class MakeRequest>
-  [[nodiscard]] std::vector<Job> to_all(Purpose purpose, Sequence sequence, MakeRequest make_request) const;
 
   ModbusPort& port_;
-  Line line_;
   ModbusProfile profile_;
   std::vector<NodeAddress> nodes_;
   std::uint8_t plan_byte_;
@@ -81,11 +74,8 @@ class ModbusDriver final : public Driver {
   std::map<NodeIndex, Kept> kept_;                           ///< profiles without a latch
   std::vector<DeviceEvent> due_;                             ///< told by the next step
   std::optional<Job> under_way_;
-  std::deque<Job> jobs_;        ///< the rest of an operation on all nodes
-  std::deque<Job> heartbeats_;  ///< TCP: between other requests
-  unsigned heartbeat_round_ = 0;
-  std::set<NodeIndex> silent_;  ///< the last request to them timed out
-  Instant expected_ = kNever;   ///< when the reply should be there
+  std::deque<Job> jobs_;       ///< late writes, a second try
+  Instant expected_ = kNever;  ///< when the reply should be there
   bool down_ = false;
   bool down_told_ = false;
 };
