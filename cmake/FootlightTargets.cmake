@@ -5,12 +5,15 @@ if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
 
-add_library(footlight_flags INTERFACE)
-target_include_directories(footlight_flags INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(footlight_flags INTERFACE
+# Programs that limit their own address space cannot run under a sanitizer: they take footlight_warnings alone.
+add_library(footlight_warnings INTERFACE)
+target_include_directories(footlight_warnings INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(footlight_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -fstack-protector-strong -ffp-contract=off
   $<$<BOOL:${FOOTLIGHT_WERROR}>:-Werror>
   $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+add_library(footlight_flags INTERFACE)
+target_link_libraries(footlight_flags INTERFACE footlight_warnings)
 if(FOOTLIGHT_SANITIZE)
   target_compile_options(footlight_flags INTERFACE -fsanitize=${FOOTLIGHT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(footlight_flags INTERFACE -fsanitize=${FOOTLIGHT_SANITIZE})

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace footlight::config {
+
+/// What the child program says about a file.
+enum class DecodeStatus : std::uint32_t {
+  ok,
+  undecodable,
+  no_pixels,        ///< width x height, one of them 0
+  too_few_frames,   ///< `count` of them
+  beyond_end,       ///< the file has `count` frames
+  too_many_pixels,  ///< width x height
+  too_many_frames,  ///< more than the limit
+  too_much_memory,
+  size_changes,  ///< at frame `count`
+};
+inline constexpr auto kLastDecodeStatus = DecodeStatus::size_changes;
+
+/// The stream from `footlight-decode` to its parent on one machine: one record `film`, then a record `frame` with its
+/// picture for each frame, then one record `end`. A file that cannot be decoded gives `end` at once or in the middle.
+/// A picture is height x ceil(width / 64) words of 64 bits as in core/film.hpp. Numbers in the machine's own order.
+struct DecodeRecord {
+  enum class Kind : std::uint32_t { film = 0x4D4C4946, frame = 0x4D415246, end = 0x20444E45 };
+  Kind kind = Kind::end;
+  DecodeStatus status = DecodeStatus::ok;
+  std::int32_t width = 0;      ///< pixels
+  std::int32_t height = 0;     ///< pixels
+  std::int32_t threshold = 0;  ///< given or found
+  std::int32_t reserved = 0;
+  std::int64_t count = 0;  ///< frame: number in the file; end: frames sent, or as the status says
+  double fps = 0;          ///< 0 for an image
+};
+static_assert(std::is_trivially_copyable_v<DecodeRecord> && sizeof(DecodeRecord) == 40);
+
+}  // namespace footlight::config

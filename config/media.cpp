@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/media.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include "config/decode_protocol.hpp"
+#include "config/decoder_process.hpp"
+#include "core/clock.hpp"
+
+namespace footlight::config {
+namespace {
+
+struct Job {
+  std::string path;
+  bool video = true;
+  int first = 0;
+  std::optional<int> last;
+  PictureOptions picture;
+  MediaLimits limits;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+std::vector<std::string> arguments_of(const Job& job) {
+  // An absolute path cannot be taken for a protocol.
+  return {job.video ? "video" : "image",
+          std::filesystem::absolute(job.path).string(),
+          std::to_string(job.first),
+          std::to_string(job.last.value_or(-1)),
+          std::to_string(job.picture.threshold.value_or(-1)),
+          job.picture.invert ? "1" : "0",
+          std::to_string(job.limits.max_pixels),
+          std::to_string(job.limits.max_frames),
+          std::to_string(static_cast<long>(std::ceil(job.limits.max_seconds))),
+          std::to_string(job.limits.max_memory_bytes)};
+}
+
+Error undecodable(const Job& job) {
+  return input_error(
+      job.video ? fmt::format(
+                      "'{}' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, "
+                      "GIF or MPEG, with a video stream)",
+                      job.path)
+                : fmt::format(
+                      "'{}' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM or PGM, of 1 to "
+                      "{} pixels)",
+                      job.path, job.limits.max_pixels));
+}
+
+/// What the child said, in words.
+Error refused_by_child(const Job& job, const DecodeRecord& said) {
+  const std::string range =
+      job.last ? fmt::format("frames {} to {}", job.first, *job.last) : fmt::format("frame {}", job.first);
+  switch (said.status) {
+    case DecodeStatus::ok:
+    case DecodeStatus::undecodable:
+      return undecodable(job);
+    case DecodeStatus::no_pixels:
+      return input_error(fmt::format("'{}' has frames of {} x {} pixels (at least 1 x 1 is needed)", job.path,
+                                     said.width, said.height));
+    case DecodeStatus::too_few_frames:
+      return input_error(
+          fmt::format("'{}' gives {} frame{} here (a video needs at least two; a single picture is an "
+                      "image)",
+                      job.path, said.count, said.count == 1 ? "" : "s"));
+    case DecodeStatus::beyond_end:
+      return input_error(fmt::format("'{}' has {} frames, {} {} beyond its end (frames count from 0, the last is {})",
+                                     job.path, said.count, range, job.last ? "reach" : "is", said.count - 1));
+    case DecodeStatus::too_many_pixels:
+      return input_error(fmt::format("'{}' has frames of {} x {} pixels (at most {} pixels are allowed)", job.path,
+                                     said.width, said.height, job.limits.max_pixels));
+    case DecodeStatus::too_many_frames:
+      return input_error(
+          fmt::format("'{}' gives more than {} frames (choose a shorter range)", job.path, job.limits.max_frames));
+    case DecodeStatus::too_much_memory:
+      return input_error(fmt::format("'{}' needs more than {} MiB to decode (a smaller frame size would do)", job.path,
+                                     job.limits.max_memory_bytes >> 20U));
+    case DecodeStatus::size_changes:
+      return input_error(fmt::format("'{}' changes its frame size at frame {} (all frames of a film have one size)",
+                                     job.path, said.count));
+  }
+  return undecodable(job);
+}
+
+Error died(const Job& job, int status) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    return input_error(
+        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
+                    "do)",
+                    job.path, job.limits.max_seconds));
+  }
+  const std::string how = WIFSIGNALED(status)
+                              ? fmt::format("by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                              : fmt::format("with status {}", WEXITSTATUS(status));
+  return input_error(fmt::format("decoding '{}' ended {} (the file is broken, or needs more than {} MiB)", job.path,
+                                 how, job.limits.max_memory_bytes >> 20U));
+}
+
+Error nonsense(const Job& job, std::string_view what) {
+  return input_error(
+      fmt::format("decoding '{}' gave no usable film: {} (footlight and footlight-decode must be of one "
+                  "version and the file whole)",
+                  job.path, what));
+}
+
+/// The child's stream, believed in nothing.
+class FilmReader {
+ public:
+  FilmReader(const Job& job, DecoderProcess& process)
+      : job_(job), process_(process), deadline_(clock_.now() + seconds(2 * job.limits.max_seconds)) {}
+
+  Result<Film> read() {
+    DecodeRecord record;
+    if (auto bad = take(&record, sizeof record)) return *std::move(bad);
+    if (auto bad = start(record)) return *std::move(bad);
+    while (true) {
+      if (auto bad = take(&record, sizeof record)) return *std::move(bad);
+      if (record.kind == DecodeRecord::Kind::end) break;
+      if (auto bad = frame(record)) return *std::move(bad);
+    }
+    if (known_refusal(record)) return refused_by_child(job_, record);
+    if (record.status != DecodeStatus::ok || record.count != static_cast<std::int64_t>(film_.frames.size())) {
+      return nonsense(job_, "it does not end as it should");
+    }
+    if (film_.frames.size() < (job_.video ? 2U : 1U) || (job_.last && wanted() != film_.frames.size())) {
+      return nonsense(job_, "frames are missing");
+    }
+    char more = 0;
+    if (process_.read(&more, 1, clock_, deadline_, job_.stop) != DecoderProcess::Read::end) {
+      return nonsense(job_, "something follows its end");
+    }
+    const int status = process_.finish(false);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return died(job_, status);
+    return std::move(film_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t wanted() const { return static_cast<std::size_t>(*job_.last - job_.first) + 1; }
+
+  static bool known_refusal(const DecodeRecord& record) {
+    return record.kind == DecodeRecord::Kind::end && record.status != DecodeStatus::ok &&
+           record.status <= kLastDecodeStatus;
+  }
+
+  std::optional<Error> take(void* data, std::size_t size) {
+    switch (process_.read(data, size, clock_, deadline_, job_.stop)) {
+      case DecoderProcess::Read::all:
+        return std::nullopt;
+      case DecoderProcess::Read::end:
+        return ended();
+      case DecoderProcess::Read::stopped:
+        return Error{ErrorKind::interrupted, fmt::format("interrupted while decoding '{}'", job_.path)};
+      case DecoderProcess::Read::late:
+        break;
+    }
+    return input_error(
+        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
+                    "do)",
+                    job_.path, 2 * job_.limits.max_seconds));
+  }
+
+  Error ended() {
+    const int status = process_.finish(false);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return nonsense(job_, "it ends too early");
+    return died(job_, status);
+  }
+
+  std::optional<Error> start(const DecodeRecord& record) {
+    if (known_refusal(record)) return refused_by_child(job_, record);
+    if (record.kind != DecodeRecord::Kind::film || record.status != DecodeStatus::ok) {
+      return nonsense(job_, "it does not begin as it should");
+    }
+    if (record.width < 1 || record.height < 1 || record.width > job_.limits.max_pixels / record.height) {
+      return nonsense(job_, "its frame size is out of range");
+    }
+    if (record.threshold < 0 || record.threshold > 255 ||
+        record.threshold != job_.picture.threshold.value_or(record.threshold)) {
+      return nonsense(job_, "its threshold is not the one asked for");
+    }
+    film_.width = record.width;
+    film_.height = record.height;
+    film_.fps = std::isfinite(record.fps) && record.fps > 0 && record.fps < 1e6 ? record.fps : 0;
+    film_.first_frame = job_.first;
+    film_.threshold = record.threshold;
+    film_.inverted = job_.picture.invert;
+    return std::nullopt;
+  }
+
+  std::optional<Error> frame(const DecodeRecord& record) {
+    const auto number = static_cast<std::int64_t>(film_.frames.size()) + (job_.video ? job_.first : 0);
+    if (record.kind != DecodeRecord::Kind::frame || record.status != DecodeStatus::ok || record.count != number ||
+        (job_.last && number > *job_.last) || film_.frames.size() >= static_cast<std::size_t>(job_.limits.max_frames)) {
+      return nonsense(job_, "a frame is out of order");
+    }
+    Mask mask(film_.width, film_.height);
+    bytes_ += mask.words().size() * sizeof(std::uint64_t);
+    if (bytes_ > job_.limits.max_memory_bytes) {
+      return input_error(
+          fmt::format("'{}' needs more than {} MiB for its frames (choose a shorter range or a smaller "
+                      "frame size)",
+                      job_.path, job_.limits.max_memory_bytes >> 20U));
+    }
+    if (auto bad = take(mask.words().data(), mask.words().size() * sizeof(std::uint64_t))) return bad;
+    if (film_.width % 64 != 0) {
+      const std::uint64_t unused = ~std::uint64_t{0} << static_cast<unsigned>(film_.width % 64);
+      const auto row = static_cast<std::size_t>(mask.row_words());
+      for (std::size_t last = row - 1; last < mask.words().size(); last += row) {
+        if ((mask.words()[last] & unused) != 0) return nonsense(job_, "a frame has pixels outside of itself");
+      }
+    }
+    film_.frames.push_back(std::move(mask));
+    return std::nullopt;
+  }
+
+  const Job& job_;
+  DecoderProcess& process_;
+  SteadyClock clock_;
+  Instant deadline_;
+  Film film_;
+  std::size_t bytes_ = 0;
+};
+
+Result<Film> decode(const Job& job) {
+  struct stat about {};
+  if (stat(job.path.c_str(), &about) != 0) {
+    return input_error(fmt::format("cannot read '{}': {}", job.path, std::strerror(errno)));
+  }
+  if (!S_ISREG(about.st_mode)) return input_error(fmt::format("'{}' is not a file", job.path));
+  auto process = DecoderProcess::start(arguments_of(job), job.limits.max_pixels);
+  if (!process) return std::move(process).error();
+  return FilmReader(job, *process).read();
+}
+
+}  // namespace
+
+Result<Film> decode_video(const VideoSource& source, const MediaLimits& limits, const std::atomic<bool>* stop) {
+  if (source.first_frame < 0 || (source.last_frame && *source.last_frame <= source.first_frame)) {
+    return input_error(fmt::format("frames {} to {} are no range (the first is at least 0, the last comes after it)",
+                                   source.first_frame, source.last_frame.value_or(-1)));
+  }
+  return decode({source.path, true, source.first_frame, source.last_frame, source.picture, limits, stop});
+}
+
+Result<Film> decode_image(const ImageSource& source, const MediaLimits& limits, const std::atomic<bool>* stop) {
+  return decode({source.path, false, 0, std::nullopt, source.picture, limits, stop});
+}
+
+}  // namespace footlight::config
