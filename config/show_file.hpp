@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,16 @@ struct LoadedShow {
 /// run, positioned. Hostile input (depth, alias bombs and cycles, duplicate keys, NUL, more than 1 MiB) is refused in
 /// bounded time and memory. Thread: reentrant. Hot path: no.
 [[nodiscard]] Result<LoadedShow, Diagnostics> load_show(const std::filesystem::path& file);
+
+/// What a film's own length comes from: its frames in the section's range, and its rate.
+struct FilmLength {
+  int frames = 0;
+  double fps = 0;
+};
+/// Gives every video section without a duration (duration_counts 0) its film's own length, (frames - 1) / fps seconds
+/// from its start, and looks for overlaps again, since only now they can be seen.
+/// @param films for each section; nothing where it is no video or not decoded: such a section stays as it is
+[[nodiscard]] Status<Diagnostics> settle_film_lengths(Show& show, const std::vector<std::optional<FilmLength>>& films);
 
 /// JSON Schema (draft 2020-12) of the show file and of the rig file, made from the listings that the reader uses.
 [[nodiscard]] std::string show_schema();

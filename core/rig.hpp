@@ -22,7 +22,7 @@ struct ModbusProfile {
   std::string name;
   int look_register = 0;                   ///< first register of the preload block
   int looks_per_register = 2;              ///< 1 or 2; with 2 the lower channel stands in the high byte
-  bool has_preload_sequence = true;        ///< the register before the looks carries the latch sequence of the preload
+  bool has_preload_sequence = true;        ///< the block begins with plan byte and latch sequence, the looks follow
   std::optional<int> latch_register;       ///< broadcast-written with the sequence; absent: looks act at once
   std::optional<int> heartbeat_register;   ///< broadcast-written every 250 ms; absent: no lease
   std::optional<int> status_register;      ///< first of: shown sequence, pending sequence, CRC of shown looks, state

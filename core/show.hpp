@@ -89,8 +89,10 @@ struct Section {
   std::string name;  ///< unique; the stable id
   Source from;
   double start_count = 1;
-  double duration_counts = 0;  ///< a video is stretched over it; 0 for images and cells
-  double hold_counts = 0;      ///< everybody stands still after the last formation
+  /// A video is stretched over it; 0 for images and cells. 0 for a video: its own length, which is known only when it
+  /// is decoded (config::settle_film_lengths puts it here).
+  double duration_counts = 0;
+  double hold_counts = 0;  ///< everybody stands still after the last formation
   Sampling sampling;
   PlannerOptions planner;
   std::optional<double> max_speed_mps;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "config/nearest.hpp"
+#include "config/show_parts.hpp"
+
+namespace footlight::config {
+namespace {
+
+std::optional<CueNumber> read_number(MappingReader& cue) {
+  const auto written = cue.written("number");
+  if (!written) return std::nullopt;
+  const auto number = CueNumber::parse(written->text);
+  if (!number) {
+    cue.error(*written, in_quotes(written->text) + " is not a cue number",
+              "write for example \"12.5\": digits, at most one point and six decimals");
+    return std::nullopt;
+  }
+  if (!written->quoted) {
+    cue.error(*written, "the cue number " + written->text + " is not quoted",
+              "write \"" + written->text + "\": unquoted, 12.10 and 12.1 would be numbers");
+    return std::nullopt;
+  }
+  return number;
+}
+
+std::optional<SectionIndex> read_section_name(MappingReader& cue, const Show& show) {
+  const auto written = cue.written("section");
+  if (!written) return std::nullopt;
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < show.sections.size(); ++s) {
+    if (show.sections[s].name == written->text) return SectionIndex::of(s);
+    names.push_back(show.sections[s].name);
+  }
+  // Sections that could not be read are not known by name: no echo of their errors.
+  if (!cue.reading().diagnostics.has_errors() || !nearest(written->text, names).empty()) {
+    cue.error(*written, "no section has the name " + in_quotes(written->text),
+              suggestion(written->text, names, "sections"));
+  }
+  return std::nullopt;
+}
+
+std::optional<Cue> read_cue(MappingReader& reader, const Show& show) {
+  Cue out;
+  out.position = reader.position();
+  const auto number = read_number(reader);
+  const auto section = read_section_name(reader, show);
+  const auto name = reader.text("name");
+  out.continue_mode = static_cast<ContinueMode>(reader.choice("continue").value_or(0));
+  out.pre_wait = seconds(reader.quantity("pre_wait").value_or(0));
+  out.post_wait = seconds(reader.quantity("post_wait").value_or(0));
+  out.notes = reader.text("notes").value_or("");
+  if (!number || !section) return std::nullopt;
+  out.number = *number;
+  out.section = *section;
+  out.name = name.value_or(show.sections[section->at()].name);
+  return out;
+}
+
+/// Without cues one GO plays the whole show.
+std::vector<Cue> cue_for_each(const std::vector<Section>& sections) {
+  std::vector<Cue> out;
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    Cue cue;
+    cue.number = *CueNumber::parse(std::to_string(s + 1));
+    cue.name = sections[s].name;
+    cue.section = SectionIndex::of(s);
+    cue.continue_mode = s + 1 < sections.size() ? ContinueMode::auto_follow : ContinueMode::manual;
+    cue.position = sections[s].position;
+    out.push_back(std::move(cue));
+  }
+  return out;
+}
+
+LookChoice read_look(MappingReader look) {
+  LookChoice out;
+  const auto colour = look.written("colour");
+  if (colour && colour->text != "group") {
+    out.colour = parse_colour(colour->text);
+    if (!out.colour)
+      look.error(*colour, in_quotes(colour->text) + " is not a colour", "group, or \"#RRGGBB\" in quotes");
+  }
+  out.effect = static_cast<Effect>(look.choice("effect").value_or(0));
+  out.brightness = static_cast<std::uint8_t>(look.integer("brightness").value_or(255));
+  return out;
+}
+
+/// "4/4": counts a measure over the note that is a count.
+std::optional<int> read_meter(MappingReader& music) {
+  const auto written = music.written("meter");
+  if (!written) return std::nullopt;
+  const std::size_t slash = written->text.find('/');
+  const auto beats = parse_integer(written->text.substr(0, slash));
+  const auto note = slash == std::string::npos ? std::nullopt : parse_integer(written->text.substr(slash + 1));
+  const bool right = beats && note && *beats >= 1 && *beats <= 64 && *note >= 1 && *note <= 64;
+  if (right) return beats;
+  music.error(*written, in_quotes(written->text) + " is not a meter",
+              "write for example 4/4; 1 to 64 counts a measure");
+  return std::nullopt;
+}
+
+}  // namespace
+
+void read_cues(ShowReading& show, MappingReader& root) {
+  std::vector<Cue>& out = show.show().cues;
+  if (!root.has("cues")) {
+    out = cue_for_each(show.show().sections);
+    return;
+  }
+  std::map<CueNumber, Position> first_at;
+  for (MappingReader& reader : root.mappings("cues")) {
+    auto cue = read_cue(reader, show.show());
+    if (!cue) continue;
+    const auto [first, is_new] = first_at.emplace(cue->number, cue->position);
+    if (!is_new) {
+      const auto written = reader.written("number");
+      const std::string number = cue->number.to_text();
+      reader.error("number", "a second cue has the number " + number,
+                   (written->text == number ? "" : written->text + " equals " + number + "; ") + "first in line " +
+                       std::to_string(first->second.line));
+      continue;
+    }
+    out.push_back(std::move(*cue));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Cue& a, const Cue& b) { return a.number < b.number; });
+}
+
+void read_looks(ShowReading& show, MappingReader looks) {
+  constexpr std::pair<std::string_view, LampRole> kRoles[] = {{"here", LampRole::here},
+                                                              {"arrive", LampRole::arrive},
+                                                              {"next", LampRole::next},
+                                                              {"handover", LampRole::handover}};
+  for (const auto& [key, role] : kRoles) {
+    if (auto look = looks.mapping(key)) show.show().looks[role] = read_look(std::move(*look));
+  }
+}
+
+void read_music(ShowReading& show, MappingReader music) {
+  const int beats = read_meter(music).value_or(4);
+  if (!music.has("changes")) {
+    show.show().tempo = TempoMap(music.number("tempo").value_or(120), beats);
+    return;
+  }
+  if (music.has("tempo")) {
+    music.error(music.key_position("tempo"), music.path("tempo"), "does not go with \"changes\"",
+                "give one tempo or a list of changes");
+  }
+  std::vector<TempoChange> changes;
+  for (MappingReader& reader : music.mappings("changes")) {
+    const auto at = reader.quantity("at");
+    const auto bpm = reader.number("tempo");
+    if (!at || !bpm) return;
+    if (changes.empty() && *at != 1) {
+      return reader.error("at", "the first tempo begins at count " + plain(*at), "it begins at count 1");
+    }
+    if (!changes.empty() && *at <= changes.back().count) {
+      return reader.error("at", "count " + plain(*at) + " does not come after count " + plain(changes.back().count),
+                          "the counts increase down the list");
+    }
+    changes.push_back({*at, *bpm});
+  }
+  auto map = TempoMap::from(std::move(changes), beats);
+  if (map) {
+    show.show().tempo = std::move(*map);
+  } else if (!music.reading().diagnostics.has_errors()) {
+    music.error("changes", map.error().message);
+  }
+}
+
+}  // namespace footlight::config

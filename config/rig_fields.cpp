@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/field.hpp"
+
+namespace footlight::config {
+namespace {
+
+const Listing& bus_listing() {
+  static const Listing kListing{
+      "buses[]",
+      "One wire.",
+      {
+          {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
+          {.key = "kind",
+           .type = Type::choice,
+           .doc = "The language on the wire; the URL must fit.",
+           .otherwise = "as the URL says",
+           .choices = {"serial", "modbus-rtu", "modbus-tcp", "can"}},
+          {.key = "url",
+           .type = Type::text,
+           .doc = "`serial:///dev/serial/by-id/...`, `rtu:///dev/...`, `tcp://host:502`, `can://can0`, or without "
+                  "hardware `sim://serial`, `sim://rtu`, `sim://tcp`, `sim://can`.",
+           .required = true},
+          {.key = "bits_per_second",
+           .type = Type::integer,
+           .doc = "Serial and RTU 1,200 to 4,000,000, CAN 10,000 to 1,000,000.",
+           .otherwise = "115200; CAN 500000",
+           .range = {1200, 4'000'000}},
+          {.key = "profile",
+           .type = Type::text,
+           .doc = "Modbus: name of a shipped device profile, or a YAML file beside the rig.",
+           .otherwise = "footlight-marker"},
+      }};
+  return kListing;
+}
+
+const Listing& wearable_listing() {
+  static const Listing kListing{
+      "nodes[].channels[]",
+      "A lamp that somebody wears; a lamp of a cell is written as the cell.",
+      {{.key = "wearable", .type = Type::text, .doc = "Id in the roster's column `wearable`.", .required = true}}};
+  return kListing;
+}
+
+const Listing& node_listing() {
+  static const Listing kListing{
+      "nodes[]",
+      "A device with one address and up to 32 lamps.",
+      {
+          {.key = "name", .type = Type::text, .doc = "Unique.", .otherwise = "bus and address, as can-a-7"},
+          {.key = "bus", .type = Type::text, .doc = "Name of its bus.", .required = true},
+          {.key = "address",
+           .type = Type::integer,
+           .doc = "Unique on its bus: CAN 1 to 126, Modbus 1 to 247, serial 1 to 254.",
+           .required = true,
+           .range = {1, 254}},
+          {.key = "channels",
+           .type = Type::lamp,
+           .doc = "1 to 32 lamps, channel 0 first: cells (`A1`), ranges of cells (`A1:H4`, row by row from A1, "
+                  "blocked cells left out) and `{wearable: W7}`.",
+           .required = true,
+           .listing = &wearable_listing(),
+           .list = true},
+      }};
+  return kListing;
+}
+
+const Listing& floor_listing() {
+  static const Listing kListing{
+      "floor",
+      "Lays a lamp for every cell that has none yet, row by row from A1, over nodes that are made for it; each bus "
+      "gets "
+      "a share as its capacity is.",
+      {
+          {.key = "buses", .type = Type::text, .doc = "Names of buses.", .required = true, .list = true},
+          {.key = "nodes_per_bus",
+           .type = Type::integer,
+           .doc = "Most nodes on one bus.",
+           .otherwise = "what carries well: CAN 126, Modbus and serial 28",
+           .range = {1, 247}},
+          {.key = "channels_per_node",
+           .type = Type::integer,
+           .doc = "Lamps on a node.",
+           .fallback = "32",
+           .range = {1, 32}},
+          {.key = "wearables",
+           .type = Type::boolean,
+           .doc = "Every wearable of the roster that has no channel yet gets one, too.",
+           .fallback = "true"},
+      }};
+  return kListing;
+}
+
+}  // namespace
+
+const Listing& rig_listing() {
+  static const Listing kListing{
+      "rig.yaml",
+      "Which lamp hangs on which wire.",
+      {
+          {.key = "rig", .type = Type::integer, .doc = "Version of this format.", .required = true, .range = {1, 1}},
+          {.key = "buses",
+           .type = Type::mapping,
+           .doc = "The wires; at least one.",
+           .required = true,
+           .listing = &bus_listing(),
+           .list = true},
+          {.key = "nodes",
+           .type = Type::mapping,
+           .doc = "Devices, one by one.",
+           .otherwise = "none",
+           .listing = &node_listing(),
+           .list = true},
+          {.key = "floor",
+           .type = Type::mapping,
+           .doc = "Devices for the whole floor at once.",
+           .otherwise = "none",
+           .listing = &floor_listing()},
+      }};
+  return kListing;
+}
+
+const Listing& profile_listing() {
+  static const Range kRegister{0, 65'535};
+  static const Listing kListing{
+      "drivers/profiles/*.yaml",
+      "Where a Modbus device keeps what; numbers of registers from 0, decimal or 0x....",
+      {
+          {.key = "profile",
+           .type = Type::integer,
+           .doc = "Version of this format.",
+           .required = true,
+           .range = {1, 1}},
+          {.key = "name", .type = Type::text, .doc = "Of the device.", .required = true},
+          {.key = "look_register",
+           .type = Type::integer,
+           .doc = "First register of the preload block: the sequence, where there is one, then the looks.",
+           .required = true,
+           .range = kRegister},
+          {.key = "looks_per_register",
+           .type = Type::integer,
+           .doc = "With 2 the lower channel stands in the high byte.",
+           .fallback = "2",
+           .range = {1, 2}},
+          {.key = "preload_sequence",
+           .type = Type::boolean,
+           .doc = "The preload block begins with a register of plan byte and sequence.",
+           .fallback = "true"},
+          {.key = "latch_register",
+           .type = Type::integer,
+           .doc = "First of three registers of the broadcast latch.",
+           .otherwise = "looks act at once",
+           .range = kRegister},
+          {.key = "heartbeat_register",
+           .type = Type::integer,
+           .doc = "First of two registers of the broadcast heartbeat.",
+           .otherwise = "no lease",
+           .range = kRegister},
+          {.key = "status_register",
+           .type = Type::integer,
+           .doc = "First of six status registers.",
+           .otherwise = "nothing can be read back",
+           .range = kRegister},
+          {.key = "look_table_register",
+           .type = Type::integer,
+           .doc = "First of four registers that upload one entry of the look table.",
+           .otherwise = "the device's looks are fixed",
+           .range = kRegister},
+      }};
+  return kListing;
+}
+
+}  // namespace footlight::config

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/rig_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "config/device_profile.hpp"
+#include "config/nearest.hpp"
+#include "config/show_parts.hpp"
+
+namespace footlight::config {
+namespace {
+
+struct Scheme {
+  std::string_view prefix;
+  BusKind kind;
+  std::string_view example;
+};
+// The longer of two prefixes of one beginning stands first.
+constexpr std::array kSchemes{
+    Scheme{"sim://serial", BusKind::serial, "serial:///dev/serial/by-id/..."},
+    Scheme{"sim://rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/..."},
+    Scheme{"sim://tcp", BusKind::modbus_tcp, "tcp://host:502"},
+    Scheme{"sim://can", BusKind::can, "can://can0"},
+    Scheme{"serial://", BusKind::serial, ""},
+    Scheme{"rtu://", BusKind::modbus_rtu, ""},
+    Scheme{"tcp://", BusKind::modbus_tcp, ""},
+    Scheme{"can://", BusKind::can, ""},
+};
+
+/// The kind that a URL's scheme stands for; nothing when the URL is none of ours.
+std::optional<BusKind> kind_of_url(std::string_view url) {
+  for (const Scheme& scheme : kSchemes) {
+    const bool simulated = !scheme.example.empty();
+    const bool begins = url.substr(0, scheme.prefix.size()) == scheme.prefix;
+    if (begins && (simulated ? url.size() == scheme.prefix.size() : url.size() > scheme.prefix.size())) {
+      return scheme.kind;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string urls_of(BusKind kind) {
+  for (const Scheme& scheme : kSchemes) {
+    if (scheme.kind == kind) return std::string(scheme.example) + " or " + std::string(scheme.prefix);
+  }
+  return {};
+}
+
+/// Reads one rig: buses, then nodes, then the floor that takes what is left.
+class RigReader {
+ public:
+  RigReader(MappingReader& root, const Show& show, bool performers_known, std::vector<std::string>& files)
+      : root_(root), show_(show), performers_known_(performers_known), files_(files) {
+    folder_ = std::filesystem::path(root.reading().file).parent_path();
+    for (std::size_t p = 0; p < show.performers.size(); ++p) {
+      if (!show.performers[p].wearable.empty()) wearables_[show.performers[p].wearable] = PerformerIndex::of(p);
+    }
+  }
+
+  Rig read() {
+    rig_.file = root_.reading().file;
+    (void)root_.integer("rig");
+    for (MappingReader& bus : root_.mappings("buses")) read_bus(bus);
+    for (MappingReader& node : root_.mappings("nodes")) read_node(node);
+    if (root_.has("floor")) {
+      if (auto floor = root_.mapping("floor")) read_floor(*floor);
+    }
+    if (!root_.reading().diagnostics.has_errors()) warn_of_dark_places();
+    std::stable_sort(rig_.nodes.begin(), rig_.nodes.end(), [](const Node& a, const Node& b) {
+      return std::pair(a.bus, a.address) < std::pair(b.bus, b.address);
+    });
+    return std::move(rig_);
+  }
+
+ private:
+  void read_bus(MappingReader& reader) {
+    Bus bus;
+    bus.position = reader.position();
+    const auto name = reader.text("name");
+    const auto url = reader.text("url");
+    const auto kind = read_kind(reader, url);
+    const bool known = reader.has("kind") || kind;
+    const auto speed = reader.integer("bits_per_second");
+    if (name) {
+      if (find_bus(*name)) {
+        reader.error("name", "a second bus has the name " + in_quotes(*name), "names of buses are unique");
+      }
+      bus.name = *name;
+    }
+    if (kind) bus.kind = *kind;
+    if (url) bus.url = *url;
+    bus.bits_per_second = speed.value_or(bus.kind == BusKind::can ? 500'000 : 115'200);
+    if (kind && speed) check_speed(reader, bus);
+    if (known) read_bus_profile(reader, bus);
+    rig_.buses.push_back(std::move(bus));  // kept when wrong, so that its nodes give no echo
+  }
+
+  static std::optional<BusKind> read_kind(MappingReader& reader, const std::optional<std::string>& url) {
+    const auto choice = reader.choice("kind");
+    const auto by_url = url ? kind_of_url(*url) : std::nullopt;
+    if (url && !by_url) {
+      reader.error("url", in_quotes(*url) + " is not the URL of a bus",
+                   choice ? urls_of(static_cast<BusKind>(*choice))
+                          : "serial:///dev/..., rtu:///dev/..., tcp://host:502, can://can0, sim://serial, sim://rtu, "
+                            "sim://tcp, sim://can");
+    }
+    if (!choice) return by_url;
+    const auto kind = static_cast<BusKind>(*choice);
+    if (by_url && *by_url != kind) {
+      reader.error("url",
+                   in_quotes(*url) + " is the URL of a " + std::string(to_text(*by_url)) + " bus, and this one is " +
+                       std::string(to_text(kind)),
+                   urls_of(kind));
+    }
+    return kind;
+  }
+
+  static void check_speed(MappingReader& reader, const Bus& bus) {
+    const bool can = bus.kind == BusKind::can;
+    const Range range = can ? Range{10'000, 1'000'000} : Range{1200, 4'000'000};
+    if (range.contains(bus.bits_per_second)) return;
+    reader.error("bits_per_second", in_quotes(std::to_string(bus.bits_per_second)) + " is out of range",
+                 std::string(to_text(bus.kind)) + ": " + to_text(range, "bit/s"));
+  }
+
+  void read_bus_profile(MappingReader& reader, Bus& bus) {
+    const bool modbus = bus.kind == BusKind::modbus_rtu || bus.kind == BusKind::modbus_tcp;
+    if (!modbus) {
+      if (reader.has("profile")) {
+        reader.error(reader.key_position("profile"), reader.path("profile"), "the key has no meaning here",
+                     "only Modbus devices have a profile");
+      }
+      return;
+    }
+    const auto name = reader.has("profile") ? reader.text("profile") : std::optional<std::string>("footlight-marker");
+    if (!name) return;
+    if (!reader.has("profile")) {
+      bus.profile = footlight_marker_profile();
+      return;
+    }
+    const auto file = find_profile(*name, folder_);
+    if (!file) {
+      reader.error("profile", "there is no device profile " + in_quotes(*name),
+                   "a shipped one, as footlight-marker, or a .yaml file beside the rig");
+      return;
+    }
+    bus.profile = read_profile(*file, reader.reading().diagnostics);
+    if (std::find(files_.begin(), files_.end(), file->string()) == files_.end()) files_.push_back(file->string());
+  }
+
+  void read_node(MappingReader& reader) {
+    Node node;
+    node.position = reader.position();
+    const auto bus = read_bus_name(reader, "bus");
+    const auto address = reader.integer("address");
+    read_channels(reader, node);
+    if (!bus || !address) return;
+    node.bus = *bus;
+    node.address = *address;
+    const Bus& on = rig_.buses[bus->at()];
+    node.name = reader.text("name").value_or(on.name + "-" + std::to_string(*address));
+    if (*address > last_address(on.kind)) {
+      return reader.error("address", "the address " + std::to_string(*address) + " is out of range",
+                          std::string(to_text(on.kind)) + ": 1 to " + std::to_string(last_address(on.kind)));
+    }
+    check_unique(reader, node, on);
+    rig_.nodes.push_back(std::move(node));
+  }
+
+  void check_unique(MappingReader& reader, const Node& node, const Bus& bus) {
+    const auto [other, is_new] = nodes_at_.emplace(std::pair(node.bus, node.address), reader.position().line);
+    if (!is_new) {
+      reader.error(
+          "address",
+          "a second node has the address " + std::to_string(node.address) + " on the bus " + in_quotes(bus.name),
+          "the first stands in line " + std::to_string(other->second));
+    }
+    const auto [named, name_is_new] = node_names_.emplace(node.name, reader.position().line);
+    if (!name_is_new && is_new) {
+      reader.error("name", "a second node has the name " + in_quotes(node.name),
+                   "the first stands in line " + std::to_string(named->second));
+    }
+  }
+
+  std::optional<BusIndex> find_bus(std::string_view name) const {
+    for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
+      if (rig_.buses[b].name == name) return BusIndex::of(b);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<BusIndex> bus_named(MappingReader& reader, const Written& written) {
+    const auto bus = find_bus(written.text);
+    if (bus) return bus;
+    std::vector<std::string> names;
+    for (const Bus& b : rig_.buses) names.push_back(b.name);
+    reader.error(written, "no bus has the name " + in_quotes(written.text), suggestion(written.text, names, "buses"));
+    return std::nullopt;
+  }
+
+  std::optional<BusIndex> read_bus_name(MappingReader& reader, std::string_view key) {
+    const auto written = reader.written(key);
+    return written ? bus_named(reader, *written) : std::nullopt;
+  }
+
+  void read_channels(MappingReader& reader, Node& node) {
+    const std::size_t errors = reader.has("channels") ? 0 : 1;
+    std::size_t channels = 0;
+    bool wrong = errors > 0;
+    for (auto& item : reader.items("channels")) {
+      const std::size_t before = channels;
+      channels += item.scalar ? add_cells(reader, *item.scalar, node) : add_wearable(*item.mapping, node);
+      wrong = wrong || channels == before;
+    }
+    if (channels > kChannelsPerNode) {
+      reader.error("channels", "the node has " + std::to_string(channels) + " channels",
+                   "at most " + std::to_string(kChannelsPerNode) + "; give the others to another node");
+    } else if (channels == 0 && !wrong) {
+      reader.error("channels", "the node has no channels", "1 to " + std::to_string(kChannelsPerNode));
+    }
+  }
+
+  /// @return how many channels the text stands for
+  std::size_t add_cells(MappingReader& reader, const Written& written, Node& node) {
+    const Grid& grid = show_.stage.grid;
+    const auto range = read_cell_range(reader, written, grid);
+    if (!range) return 0;
+    const bool single = range->first == range->last;
+    std::size_t count = 0;
+    for (int row = range->first.row; row <= range->last.row; ++row) {
+      for (int column = range->first.column; column <= range->last.column; ++column) {
+        const CellIndex cell = grid.index({column, row});
+        if (std::binary_search(show_.stage.blocked.begin(), show_.stage.blocked.end(), cell)) {
+          if (single)
+            reader.error(written, "the cell " + written.text + " is blocked", "there is no lamp on a blocked cell");
+          count += single ? 1 : 0;
+          continue;
+        }
+        ++count;
+        if (count > kMaxCounted) return count;  // too many in any case
+        add_cell(reader, written, cell, node);
+      }
+    }
+    return count;
+  }
+
+  void add_cell(MappingReader& reader, const Written& written, CellIndex cell, Node& node) {
+    const auto [other, is_new] = lamp_line_.emplace(cell, written.position.line);
+    if (is_new) {
+      node.channels.push_back({Channel::Kind::cell, cell, {}});
+    } else {
+      reader.error(written, "the cell " + show_.stage.grid.name(cell) + " is given a second lamp",
+                   "the first stands in line " + std::to_string(other->second));
+    }
+  }
+
+  std::size_t add_wearable(MappingReader& reader, Node& node) {
+    const auto written = reader.written("wearable");
+    if (!written) return 0;
+    const auto wearer = wearables_.find(written->text);
+    if (wearer == wearables_.end()) {
+      std::vector<std::string> ids;
+      for (const auto& [id, performer] : wearables_) ids.push_back(id);
+      if (performers_known_) {
+        reader.error(*written, "nobody wears " + in_quotes(written->text),
+                     ids.empty() ? "the roster has no wearables" : suggestion(written->text, ids, "wearables"));
+      }
+      return 1;
+    }
+    const auto [other, is_new] = worn_line_.emplace(wearer->second, written->position.line);
+    if (is_new) {
+      node.channels.push_back({Channel::Kind::wearable, {}, wearer->second});
+    } else {
+      reader.error(*written, "the wearable " + in_quotes(written->text) + " is given a second channel",
+                   "the first stands in line " + std::to_string(other->second));
+    }
+    return 1;
+  }
+
+  std::vector<Channel> lamps_left(bool with_wearables) const {
+    std::vector<Channel> out;
+    const auto& blocked = show_.stage.blocked;
+    for (int c = 0; c < show_.stage.grid.size(); ++c) {
+      const CellIndex cell = CellIndex::of(c);
+      if (std::binary_search(blocked.begin(), blocked.end(), cell) || lamp_line_.contains(cell)) continue;
+      out.push_back({Channel::Kind::cell, cell, {}});
+    }
+    for (std::size_t p = 0; p < show_.performers.size() && with_wearables; ++p) {
+      const PerformerIndex performer = PerformerIndex::of(p);
+      if (show_.performers[p].wearable.empty() || worn_line_.contains(performer)) continue;
+      out.push_back({Channel::Kind::wearable, {}, performer});
+    }
+    return out;
+  }
+
+  void read_floor(MappingReader& floor) {
+    const auto per_bus = floor.integer("nodes_per_bus");
+    const auto channels = floor.integer("channels_per_node");
+    const auto with_wearables = floor.boolean("wearables");
+    std::vector<BusIndex> buses;
+    bool wrong = false;
+    for (const Written& written : floor.list("buses")) {
+      const auto bus = bus_named(floor, written);
+      wrong = wrong || !bus;
+      if (!bus) continue;
+      if (std::find(buses.begin(), buses.end(), *bus) == buses.end()) {
+        buses.push_back(*bus);
+      } else {
+        floor.error(written, "the bus " + in_quotes(written.text) + " stands here for the second time");
+      }
+    }
+    if (wrong || !channels || !with_wearables || (floor.has("nodes_per_bus") && !per_bus)) return;
+    lay_floor(floor, buses, per_bus, *channels, lamps_left(*with_wearables));
+  }
+
+  void lay_floor(MappingReader& floor, const std::vector<BusIndex>& buses, std::optional<int> per_bus, int channels,
+                 const std::vector<Channel>& lamps) {
+    std::vector<int> capacities;
+    std::vector<std::vector<int>> taken(buses.size());
+    for (std::size_t b = 0; b < buses.size(); ++b) {
+      const BusKind kind = rig_.buses[buses[b].at()].kind;
+      for (const Node& node : rig_.nodes) {
+        if (node.bus == buses[b]) taken[b].push_back(node.address);
+      }
+      const int addresses = last_address(kind) - static_cast<int>(taken[b].size());
+      const int well = per_bus ? *per_bus : nodes_that_carry_well(kind) - static_cast<int>(taken[b].size());
+      capacities.push_back(std::clamp(well, 0, addresses));
+    }
+    const int capacity = std::accumulate(capacities.begin(), capacities.end(), 0);
+    const auto nodes = (lamps.size() + static_cast<std::size_t>(channels) - 1) / static_cast<std::size_t>(channels);
+    if (static_cast<int>(nodes) > capacity) {
+      return floor.error("buses",
+                         std::to_string(lamps.size()) + " lamps need " + std::to_string(nodes) + " nodes of " +
+                             std::to_string(channels) + " channels, and these buses carry " + std::to_string(capacity),
+                         "more buses, or a larger nodes_per_bus");
+    }
+    for (Node& node : lay_nodes(lamps, rig_.buses, buses, capacities, taken, channels)) {
+      node.position = floor.position();
+      rig_.nodes.push_back(std::move(node));
+    }
+  }
+
+  void warn_of_dark_places() {
+    std::set<CellIndex> lit;
+    for (const Node& node : rig_.nodes) {
+      for (const Channel& channel : node.channels) {
+        if (channel.kind == Channel::Kind::cell) lit.insert(channel.cell);
+      }
+    }
+    std::size_t dark = 0;
+    std::string first;
+    for (int c = 0; c < show_.stage.grid.size(); ++c) {
+      const CellIndex cell = CellIndex::of(c);
+      const auto& blocked = show_.stage.blocked;
+      if (lit.contains(cell) || std::binary_search(blocked.begin(), blocked.end(), cell)) continue;
+      if (dark++ == 0) first = show_.stage.grid.name(cell);
+    }
+    if (dark == 0) return;
+    root_.reading().diagnostics.warning({rig_.file, 0, 0}, "",
+                                        dark == 1 ? "the cell " + first + " has no lamp"
+                                                  : std::to_string(dark) + " cells have no lamp, the first is " + first,
+                                        "people find their place there without light; floor: lays what is left");
+  }
+
+  static constexpr std::size_t kMaxCounted = 10'000;
+
+  MappingReader& root_;
+  const Show& show_;
+  bool performers_known_;
+  std::vector<std::string>& files_;
+  std::filesystem::path folder_;
+  Rig rig_;
+  std::map<std::string, PerformerIndex> wearables_;
+  std::map<std::pair<BusIndex, int>, int> nodes_at_;
+  std::map<std::string, int> node_names_;
+  std::map<CellIndex, int> lamp_line_;
+  std::map<PerformerIndex, int> worn_line_;
+};
+
+}  // namespace
+
+Rig read_rig(const std::string& file, const Show& show, bool performers_known, Diagnostics& diagnostics,
+             std::vector<std::string>& files) {
+  Reading reading{file, diagnostics};
+  const auto bytes = read_bounded(file, TextLimits{}.max_bytes);
+  if (!bytes) {
+    diagnostics.error({file, 0, 0}, "", bytes.error().message);
+    return {};
+  }
+  auto root = read_root(reading, *bytes, rig_listing());
+  if (!root) return {};
+  return RigReader(*root, show, performers_known, files).read();
+}
+
+}  // namespace footlight::config

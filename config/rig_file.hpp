@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/mapping_reader.hpp"
+#include "core/rig.hpp"
+#include "core/show.hpp"
+
+namespace footlight::config {
+
+/// Reads a rig for a show whose stage is known. Errors and warnings go to `diagnostics`; profiles that were read are
+/// added to `files`.
+/// @param performers_known false: wearables are not checked, since the roster itself has errors
+[[nodiscard]] Rig read_rig(const std::string& file, const Show& show, bool performers_known, Diagnostics& diagnostics,
+                           std::vector<std::string>& files);
+
+/// Simulated buses of three kinds, as many as carry well, with a lamp for every cell that is not blocked and every
+/// wearable of the performers. O(cells)
+[[nodiscard]] Rig make_simulated_rig(const Show& show);
+
+/// The most nodes that a bus carries well: CAN 126, Modbus and serial 28 (1,792 lamps switch within half a second).
+[[nodiscard]] int nodes_that_carry_well(BusKind kind);
+[[nodiscard]] int last_address(BusKind kind);
+/// Nodes `first_address`.. on each of `buses` for all `lamps` in their order, each bus a share as its capacity is.
+/// @param capacities nodes, for each of `buses`; their sum x channels_per_node is at least lamps.size()
+/// @param taken addresses in use, for each of `buses`
+[[nodiscard]] std::vector<Node> lay_nodes(const std::vector<Channel>& lamps, const std::vector<Bus>& all_buses,
+                                          const std::vector<BusIndex>& buses, const std::vector<int>& capacities,
+                                          const std::vector<std::vector<int>>& taken, int channels_per_node);
+
+}  // namespace footlight::config

@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/field.hpp"
+
+namespace footlight::config {
+namespace {
+
+constexpr double kMost = 1e6;  // counts: a show of a day at 700 counts a minute
+
+const Listing& grid_listing() {
+  static const Listing kListing{
+      "stage.grid",
+      "The floor: equal cells, one lamp and at most one person each.",
+      {
+          {.key = "kind",
+           .type = Type::choice,
+           .doc = "Shape of the cells.",
+           .fallback = "square",
+           .choices = {"square", "hexagonal", "triangular"}},
+          {.key = "columns",
+           .type = Type::integer,
+           .doc = "Cells from stage right to stage left; columns x rows is at most 4,000,000.",
+           .required = true,
+           .range = {1, 4096}},
+          {.key = "rows",
+           .type = Type::integer,
+           .doc = "Cells from downstage to upstage.",
+           .required = true,
+           .range = {1, 4096}},
+          {.key = "pitch",
+           .type = Type::length,
+           .doc = "Distance of neighbouring centres.",
+           .fallback = "1 m",
+           .range = {0, 100, true}},
+      }};
+  return kListing;
+}
+
+const Listing& stage_listing() {
+  static const Listing kListing{
+      "stage",
+      "The floor and the limits that hold on it.",
+      {
+          {.key = "grid", .type = Type::mapping, .doc = "The cells.", .required = true, .listing = &grid_listing()},
+          {.key = "blocked",
+           .type = Type::cells,
+           .doc = "Set pieces, pits: nobody stands or walks here, no lamp.",
+           .otherwise = "none",
+           .list = true},
+          {.key = "reserve",
+           .type = Type::cells,
+           .doc = "The wings: who is not in the picture stands here, dark.",
+           .otherwise = "none",
+           .list = true},
+          {.key = "clearance",
+           .type = Type::length,
+           .doc = "Nobody comes nearer to anybody than this, centre to centre, or than the sum of the two people's "
+                  "radii where that is more.",
+           .fallback = "0.5 m",
+           .range = {0, 100}},
+          {.key = "max_speed",
+           .type = Type::speed,
+           .doc = "Nobody walks faster; a section or a person may have a limit of its own.",
+           .fallback = "1.4 m/s",
+           .range = {0, 20, true}},
+          {.key = "lag",
+           .type = Type::time,
+           .doc = "How late anybody may start or stop without coming too close; reported for each transition.",
+           .fallback = "0.2 s",
+           .range = {0, 10}},
+      }};
+  return kListing;
+}
+
+const Listing& group_listing() {
+  static const Listing kListing{
+      "performers.groups[]",
+      "People who share a colour.",
+      {
+          {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
+          {.key = "members",
+           .type = Type::members,
+           .doc = "Ids, or ranges of numbers as 1-300; nobody is in two groups. With a roster its column `group` may "
+                  "say it instead.",
+           .otherwise = "as the roster says",
+           .list = true},
+          {.key = "colour", .type = Type::colour, .doc = "Of their lamps.", .required = true},
+      }};
+  return kListing;
+}
+
+const Listing& performers_listing() {
+  static const Listing kListing{
+      "performers",
+      "Who is on stage: a number of people, or a roster.",
+      {
+          {.key = "count",
+           .type = Type::integer,
+           .doc = "That many people with the ids 1, 2, 3 ...",
+           .range = {1, 100'000}},
+          {.key = "from", .type = Type::file, .doc = "Roster: a CSV file, one row a person."},
+          {.key = "groups",
+           .type = Type::mapping,
+           .doc = "Groups and their colours.",
+           .otherwise = "none",
+           .listing = &group_listing(),
+           .list = true},
+          {.key = "colour", .type = Type::colour, .doc = "Of who is in no group.", .fallback = "#FFFFFF"},
+      },
+      "count from"};
+  return kListing;
+}
+
+const Listing& tempo_listing() {
+  static const Listing kListing{
+      "music.changes[]",
+      "A tempo from a count on.",
+      {
+          {.key = "at",
+           .type = Type::at_count,
+           .doc = "Counts increase down the list; the first is count 1.",
+           .required = true,
+           .range = {1, kMost}},
+          {.key = "tempo", .type = Type::number, .doc = "Counts a minute.", .required = true, .range = {1, 1000}},
+      }};
+  return kListing;
+}
+
+const Listing& music_listing() {
+  static const Listing kListing{"music",
+                                "How counts become time.",
+                                {
+                                    {.key = "tempo",
+                                     .type = Type::number,
+                                     .doc = "Counts a minute, for the whole show.",
+                                     .otherwise = "120, unless `changes` is given",
+                                     .range = {1, 1000}},
+                                    {.key = "changes",
+                                     .type = Type::mapping,
+                                     .doc = "A tempo map instead of one tempo.",
+                                     .otherwise = "none",
+                                     .listing = &tempo_listing(),
+                                     .list = true},
+                                    {.key = "meter",
+                                     .type = Type::meter,
+                                     .doc = "Counts a measure (the upper number), for measure and beat in print.",
+                                     .fallback = "4/4"},
+                                }};
+  return kListing;
+}
+
+const Listing& source_listing() {
+  static const Listing kListing{
+      "sections[].from",
+      "Where the formations come from; `fit`, `threshold` and `invert` go with a video or an image.",
+      {
+          {.key = "video", .type = Type::file, .doc = "A monochrome video, planned key frame by key frame."},
+          {.key = "image", .type = Type::file, .doc = "One picture (PNG, JPEG, BMP, PBM, PGM), one formation."},
+          {.key = "cells", .type = Type::file, .doc = "A CSV file with everybody's cell, one formation."},
+          {.key = "frames",
+           .type = Type::frames,
+           .doc = "First and last frame of the video, from 0, the last included; `100-` goes to the end.",
+           .otherwise = "the whole video"},
+          {.key = "fit",
+           .type = Type::choice,
+           .doc = "`area`: the largest key frame fills as many cells as there are people; `contain`: the whole frame "
+                  "lies on the stage without the reserve's columns; `cover`: the frame covers the stage.",
+           .fallback = "area",
+           .choices = {"area", "contain", "cover"}},
+          {.key = "threshold",
+           .type = Type::threshold,
+           .doc = "Pixels brighter than this are the picture; `otsu` finds one value for the section.",
+           .fallback = "otsu"},
+          {.key = "invert", .type = Type::boolean, .doc = "Dark pixels are the picture.", .fallback = "false"},
+      },
+      "video image cells"};
+  return kListing;
+}
+
+const Listing& sampling_listing() {
+  static const Listing kListing{"sections[].sampling",
+                                "Which frames of a video become formations.",
+                                {
+                                    {.key = "interval",
+                                     .type = Type::time,
+                                     .doc = "Longest time between two formations, in time of the show.",
+                                     .fallback = "3.2 s",
+                                     .range = {0, 3600, true}},
+                                    {.key = "hash",
+                                     .type = Type::number,
+                                     .doc = "Share of differing bits of the average hash that makes a new formation.",
+                                     .fallback = "0.10",
+                                     .range = {0, 1, true}},
+                                    {.key = "snap",
+                                     .type = Type::choice,
+                                     .doc = "Formations fall on whole counts, or where the frame falls.",
+                                     .fallback = "count",
+                                     .choices = {"count", "none"}},
+                                }};
+  return kListing;
+}
+
+const Listing& region_listing() {
+  static const Listing kListing{"sections[].planner.region",
+                                "Bounds of a region of people who move together.",
+                                {
+                                    {.key = "size",
+                                     .type = Type::integer,
+                                     .doc = "Most people in a region of the finest division.",
+                                     .fallback = "60",
+                                     .range = {1, 100'000}},
+                                    {.key = "variance",
+                                     .type = Type::area,
+                                     .doc = "Largest mean squared distance from a region's anchor; a bare number "
+                                            "means m2.",
+                                     .fallback = "30 m2",
+                                     .range = {0, kMost, true},
+                                     .bare = true},
+                                }};
+  return kListing;
+}
+
+const Listing& planner_listing() {
+  static const Listing kListing{
+      "sections[].planner",
+      "How people are matched with the cells of the next formation.",
+      {
+          {.key = "model",
+           .type = Type::choice,
+           .doc = "`hierarchical` keeps regions of people together, `flat` matches everybody at once.",
+           .fallback = "hierarchical",
+           .choices = {"hierarchical", "flat"}},
+          {.key = "layers", .type = Type::integer, .doc = "Layers of the hierarchy.", .fallback = "2", .range = {1, 6}},
+          {.key = "region",
+           .type = Type::mapping,
+           .doc = "Bounds of a region.",
+           .otherwise = "as below",
+           .listing = &region_listing()},
+          {.key = "cost",
+           .type = Type::choice,
+           .doc = "What is kept small: the sum of squared distances, or of distances.",
+           .fallback = "squared",
+           .choices = {"squared", "euclidean"}},
+      }};
+  return kListing;
+}
+
+const Listing& section_listing() {
+  static const Listing kListing{"sections[]",
+                                "A stretch of the show with one source of formations. Sections do not overlap.",
+                                {
+                                    {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
+                                    {.key = "from",
+                                     .type = Type::mapping,
+                                     .doc = "The formations.",
+                                     .required = true,
+                                     .listing = &source_listing()},
+                                    {.key = "start",
+                                     .type = Type::at_count,
+                                     .doc = "Everybody stands in the first formation at this count.",
+                                     .required = true,
+                                     .range = {1, kMost}},
+                                    {.key = "duration",
+                                     .type = Type::counts,
+                                     .doc = "The video is stretched over it.",
+                                     .otherwise = "the video's own length",
+                                     .range = {0, kMost, true}},
+                                    {.key = "hold",
+                                     .type = Type::counts,
+                                     .doc = "Everybody stands still that long after the last formation.",
+                                     .fallback = "0 counts",
+                                     .range = {0, kMost}},
+                                    {.key = "sampling",
+                                     .type = Type::mapping,
+                                     .doc = "Which frames of a video become formations.",
+                                     .otherwise = "as below",
+                                     .listing = &sampling_listing()},
+                                    {.key = "planner",
+                                     .type = Type::mapping,
+                                     .doc = "How people are matched with cells.",
+                                     .otherwise = "as below",
+                                     .listing = &planner_listing()},
+                                    {.key = "max_speed",
+                                     .type = Type::speed,
+                                     .doc = "Nobody walks faster in this section, nor into it.",
+                                     .otherwise = "`stage.max_speed`",
+                                     .range = {0, 20, true}},
+                                }};
+  return kListing;
+}
+
+const Listing& cue_listing() {
+  static const Listing kListing{
+      "cues[]",
+      "What GO starts.",
+      {
+          {.key = "number",
+           .type = Type::cue_number,
+           .doc = "Unique; \"12.10\" equals \"12.1\"; at most six decimals.",
+           .required = true},
+          {.key = "section", .type = Type::text, .doc = "Name of the section that starts.", .required = true},
+          {.key = "name", .type = Type::text, .doc = "For the console.", .otherwise = "the section's name"},
+          {.key = "continue",
+           .type = Type::choice,
+           .doc = "What brings the next cue: GO, this cue's start (auto-continue) or its end (auto-follow).",
+           .fallback = "manual",
+           .choices = {"manual", "auto-continue", "auto-follow"}},
+          {.key = "pre_wait",
+           .type = Type::time,
+           .doc = "From GO until the cue starts.",
+           .fallback = "0 s",
+           .range = {0, 86'400}},
+          {.key = "post_wait",
+           .type = Type::time,
+           .doc = "Added before an automatic next cue.",
+           .fallback = "0 s",
+           .range = {0, 86'400}},
+          {.key = "notes", .type = Type::text, .doc = "For whoever calls the show.", .otherwise = "none"},
+      }};
+  return kListing;
+}
+
+/// The four roles differ in their default effect only.
+Listing look_listing(std::string_view name, std::string_view doc, std::string_view effect) {
+  return {name,
+          doc,
+          {
+              {.key = "colour",
+               .type = Type::look_colour,
+               .doc = "`group`: the colour of the person's group.",
+               .fallback = "group"},
+              {.key = "effect",
+               .type = Type::choice,
+               .doc = "Nothing flashes above 3 Hz.",
+               .fallback = effect,
+               .choices = {"steady", "blink", "pulse", "double-blink", "count-down"}},
+              {.key = "brightness", .type = Type::integer, .doc = "0 is dark.", .fallback = "255", .range = {0, 255}},
+          }};
+}
+
+const Listing& looks_listing() {
+  static const Listing kHere = look_listing("looks.here", "Somebody stands here now and stays.", "steady");
+  static const Listing kArrive = look_listing("looks.arrive", "Somebody is walking to this cell now.", "pulse");
+  static const Listing kNext =
+      look_listing("looks.next", "Somebody will walk to this cell at the next move.", "count-down");
+  static const Listing kHandover = look_listing(
+      "looks.handover", "Somebody stands here and leaves at the next move, and somebody else comes.", "double-blink");
+  static const Listing kListing{
+      "looks",
+      "What a cell's lamp tells.",
+      {
+          {.key = "here", .type = Type::mapping, .doc = kHere.doc, .otherwise = "as below", .listing = &kHere},
+          {.key = "arrive", .type = Type::mapping, .doc = kArrive.doc, .otherwise = "as below", .listing = &kArrive},
+          {.key = "next", .type = Type::mapping, .doc = kNext.doc, .otherwise = "as below", .listing = &kNext},
+          {.key = "handover",
+           .type = Type::mapping,
+           .doc = kHandover.doc,
+           .otherwise = "as below",
+           .listing = &kHandover},
+      }};
+  return kListing;
+}
+
+}  // namespace
+
+const Listing& show_listing() {
+  static const Listing kListing{
+      "show.yaml",
+      "The whole show.",
+      {
+          {.key = "footlight",
+           .type = Type::integer,
+           .doc = "Version of this format.",
+           .required = true,
+           .range = {1, 1}},
+          {.key = "title", .type = Type::text, .doc = "For people.", .required = true},
+          {.key = "stage", .type = Type::mapping, .doc = "The floor.", .required = true, .listing = &stage_listing()},
+          {.key = "performers",
+           .type = Type::mapping,
+           .doc = "Who is on it.",
+           .required = true,
+           .listing = &performers_listing()},
+          {.key = "music",
+           .type = Type::mapping,
+           .doc = "Tempo and meter.",
+           .otherwise = "120 counts a minute in 4/4",
+           .listing = &music_listing()},
+          {.key = "sections",
+           .type = Type::mapping,
+           .doc = "The pictures, in time; at least one.",
+           .required = true,
+           .listing = &section_listing(),
+           .list = true},
+          {.key = "cues",
+           .type = Type::mapping,
+           .doc = "What GO starts.",
+           .otherwise = "one for each section, numbered from 1, each following the one before",
+           .listing = &cue_listing(),
+           .list = true},
+          {.key = "looks",
+           .type = Type::mapping,
+           .doc = "What lamps look like.",
+           .otherwise = "as below",
+           .listing = &looks_listing()},
+          {.key = "announce",
+           .type = Type::counts,
+           .doc = "How long before a move the next places light up.",
+           .fallback = "4 counts",
+           .range = {0, 1000}},
+          {.key = "rig",
+           .type = Type::file,
+           .doc = "Buses, nodes and lamps.",
+           .otherwise = "simulated buses of three kinds that carry a lamp for every cell"},
+      }};
+  return kListing;
+}
+
+}  // namespace footlight::config

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/mapping_reader.hpp"
+#include "config/show_file.hpp"
+
+namespace footlight::config {
+
+/// What the parts of a show file need while they are read: the show so far, the files it names, and what is known well
+/// enough to be checked against. A part that failed leaves its flag false, so that no error has an echo.
+struct ShowReading {
+  Reading& reading;
+  std::filesystem::path folder;  ///< of the show file
+  LoadedShow& loaded;
+  bool has_stage = false;
+  bool has_performers = false;
+
+  [[nodiscard]] Show& show() const { return loaded.show; }
+};
+
+/// A path of a file that must exist, noted in LoadedShow::files; empty after an error.
+/// @param folder of the file that names it
+[[nodiscard]] std::string existing_file(MappingReader& mapping, std::string_view key,
+                                        const std::filesystem::path& folder, std::vector<std::string>& files);
+
+void read_stage(ShowReading& show, MappingReader stage);
+void read_performers(ShowReading& show, MappingReader performers);
+void read_music(ShowReading& show, MappingReader music);
+void read_sections(ShowReading& show, MappingReader& root);
+/// Sections ascending by start. Says which two overlap; a video without a duration has no length yet.
+void check_overlaps(const std::vector<Section>& sections, Diagnostics& diagnostics);
+void read_cues(ShowReading& show, MappingReader& root);
+void read_looks(ShowReading& show, MappingReader looks);
+
+/// Cells of a list of names and ranges, ascending and each once; what lies off the grid is reported.
+[[nodiscard]] std::vector<CellIndex> read_cells(MappingReader& mapping, std::string_view key, const Grid& grid);
+/// One name or range; nothing after an error.
+[[nodiscard]] std::optional<CellRange> read_cell_range(MappingReader& mapping, const Written& written,
+                                                       const Grid& grid);
+
+/// CSV `performer,col,row` or `performer,cell`: a free cell for every performer. Errors with line and column.
+[[nodiscard]] std::vector<CellIndex> read_cells_csv(ShowReading& show, const std::string& file);
+/// CSV id,name,call_name,group,cast,cover,radius,speed,wearable; only id is needed.
+void read_roster_csv(ShowReading& show, const std::string& file);
+
+}  // namespace footlight::config

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "config/nearest.hpp"
+#include "config/show_parts.hpp"
+
+namespace footlight::config {
+namespace {
+
+std::optional<Grid> read_grid(MappingReader grid) {
+  const auto kind = grid.choice("kind");
+  const auto columns = grid.integer("columns");
+  const auto rows = grid.integer("rows");
+  const auto pitch = grid.quantity("pitch");
+  if (!kind || !columns || !rows || !pitch) return std::nullopt;
+  auto made = Grid::make(static_cast<GridKind>(*kind), *columns, *rows, *pitch);
+  if (made) return *made;
+  grid.error(grid.position(), grid.path(),
+             std::to_string(*columns) + " x " + std::to_string(*rows) + " cells are too many", made.error().message);
+  return std::nullopt;
+}
+
+/// Whoever is blocked and in reserve at once is reported with the cells' names.
+void check_disjoint(MappingReader& stage, const Stage& read) {
+  std::vector<CellIndex> both;
+  std::set_intersection(read.blocked.begin(), read.blocked.end(), read.reserve.begin(), read.reserve.end(),
+                        std::back_inserter(both));
+  if (both.empty()) return;
+  const std::string name = read.grid.name(both.front());
+  stage.error("reserve",
+              both.size() == 1 ? "the cell " + name + " is blocked"
+                               : std::to_string(both.size()) + " cells are blocked, the first is " + name,
+              "nobody can stand on a blocked cell");
+}
+
+}  // namespace
+
+std::optional<CellRange> read_cell_range(MappingReader& mapping, const Written& written, const Grid& grid) {
+  const auto range = parse_cell_range(written.text);
+  if (!range) {
+    mapping.error(written, in_quotes(written.text) + " is not a cell or a range of cells",
+                  "write for example A1 or A1:J48");
+    return std::nullopt;
+  }
+  if (grid.contains(range->first) && grid.contains(range->last)) return range;
+  const Cell off = grid.contains(range->last) ? range->first : range->last;
+  mapping.error(written, "the cell " + cell_name(off) + " is off the grid",
+                "A1 to " + cell_name({grid.columns() - 1, grid.rows() - 1}));
+  return std::nullopt;
+}
+
+std::vector<CellIndex> read_cells(MappingReader& mapping, std::string_view key, const Grid& grid) {
+  // Corners of the ranges first, sums along rows and columns after: the cost does not depend on how they overlap.
+  const auto width = static_cast<std::size_t>(grid.columns()) + 1;
+  std::vector<int> covers(width * (static_cast<std::size_t>(grid.rows()) + 1));
+  const auto corner = [&](int column, int row) -> int& {
+    return covers[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)];
+  };
+  for (const Written& written : mapping.list(key)) {
+    const auto range = read_cell_range(mapping, written, grid);
+    if (!range) continue;
+    ++corner(range->first.column, range->first.row);
+    --corner(range->last.column + 1, range->first.row);
+    --corner(range->first.column, range->last.row + 1);
+    ++corner(range->last.column + 1, range->last.row + 1);
+  }
+  std::vector<CellIndex> out;
+  for (int row = 0; row < grid.rows(); ++row) {
+    for (int column = 0; column < grid.columns(); ++column) {
+      if (column > 0) corner(column, row) += corner(column - 1, row);
+      if (row > 0) corner(column, row) += corner(column, row - 1);
+      if (column > 0 && row > 0) corner(column, row) -= corner(column - 1, row - 1);
+      if (corner(column, row) > 0) out.push_back(grid.index({column, row}));
+    }
+  }
+  return out;
+}
+
+void read_stage(ShowReading& show, MappingReader stage) {
+  Stage& out = show.show().stage;
+  if (auto grid = stage.mapping("grid")) {
+    if (const auto made = read_grid(std::move(*grid))) {
+      out.grid = *made;
+      out.blocked = read_cells(stage, "blocked", out.grid);
+      out.reserve = read_cells(stage, "reserve", out.grid);
+      check_disjoint(stage, out);
+      show.has_stage = true;
+    }
+  }
+  out.clearance_m = stage.quantity("clearance").value_or(out.clearance_m);
+  out.max_speed_mps = stage.quantity("max_speed").value_or(out.max_speed_mps);
+  if (const auto lag_s = stage.quantity("lag")) out.lag = seconds(*lag_s);
+}
+
+}  // namespace footlight::config
