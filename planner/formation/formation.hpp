@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "planner/formation/placement.hpp"
+
+namespace footlight::planner {
+
+/// A fixed even order of the cells (Bayer's ordered dither, 64 x 64): any first part of it is spread evenly over the
+/// floor, and the same in every frame, so that thinning moves nobody. One rank a cell.
+[[nodiscard]] std::vector<std::uint32_t> even_ranks(const Grid& grid);
+
+/// For each cell the distance, m, to the nearest of `from` (infinity when there are none). O(cells log cells)
+[[nodiscard]] std::vector<double> distance_to(const Grid& grid, std::span<const CellIndex> from);
+
+/// What one frame draws.
+struct Drawing {
+  std::vector<CellIndex> cells;  ///< ascending, exactly `people`, unless fewer are usable
+  int in_picture = 0;            ///< chosen cells with picture in them
+  int touched = 0;               ///< usable cells with picture in them, chosen or not
+  int full = 0;                  ///< cells that the picture fills by area, before the number was settled
+};
+
+struct DrawingTask {
+  const Grid* grid = nullptr;
+  const std::vector<double>* shares = nullptr;      ///< picture in each cell
+  const CellFlags* usable = nullptr;                ///< cells that may be chosen
+  const std::vector<std::uint32_t>* ranks = nullptr;  ///< even_ranks
+  int most = 0;                                     ///< people there are
+  int least = 0;                                    ///< people who must be drawn because the reserve cannot hold them
+  std::span<const CellIndex> when_blank;            ///< the picture to widen when this one is blank; may be empty
+};
+
+/// The cells of a frame (Li 2020 Eq. 5-6): as many as the picture's area fills, within [least, most]. They are the cells
+/// with the most picture, so T_g is the share of the last one chosen; among cells with equal shares an even pattern
+/// decides. Where there must be more people than cells with picture the picture is widened by the cells nearest to it.
+[[nodiscard]] Drawing draw(const DrawingTask& task);
+
+/// The order in which reserve cells are given up: the first `n` of the result are the ones that n people in the reserve
+/// stand on, so that two numbers differ by as few cells as possible. Of the `most_waiting` cells nearest to the picture
+/// the farthest are left last.
+[[nodiscard]] std::vector<CellIndex> reserve_order(const std::vector<double>& distance_to_picture,
+                                                   const std::vector<CellIndex>& reserve, int most_waiting);
+
+}  // namespace footlight::planner

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/repair/exchange.hpp"
+
+#include "planner/repair/closest_approach.hpp"
+
+namespace footlight::planner {
+
+Exchanged exchange(std::span<const Point> sources, std::span<const Point> targets,
+                   std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk) {
+  Exchanged done;
+  std::vector<Walk> walks(sources.size());
+  for (;;) {
+    for (std::size_t i = 0; i < sources.size(); ++i) walks[i] = {sources[i], targets[target_of[i]]};
+    int exchanged = 0;
+    for (const NearPair& pair : near_pairs(walks, reach_m)) {
+      Walk& a = walks[pair.a];
+      Walk& b = walks[pair.b];
+      const double product = dot(a.from - b.from, a.to - b.to);
+      if (product >= 0 || closest_approach(a, b).distance_m >= reach_m) continue;
+      if (!may_walk(a.from, b.to) || !may_walk(b.from, a.to)) continue;
+      std::swap(a.to, b.to);
+      std::swap(target_of[pair.a], target_of[pair.b]);
+      done.squares_saved_m2 += -2 * product;
+      ++exchanged;
+    }
+    done.exchanges += exchanged;
+    if (exchanged == 0) return done;
+  }
+}
+
+}  // namespace footlight::planner

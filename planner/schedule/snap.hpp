@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "planner/schedule/pace.hpp"
+
+namespace footlight::planner {
+
+/// One step of everybody from cells to cells.
+struct SnapTask {
+  const Ways* ways = nullptr;
+  std::span<const CellIndex> now;    ///< where the slots are; distinct
+  std::span<const CellIndex> own;    ///< the slots' own cells at the next instant; distinct
+  std::span<const Wanted> wanted;    ///< at the next instant
+  std::span<const Wanted> onward;    ///< at the instant after that; empty at the end
+  double longest_m = 0;              ///< from now to the next instant
+  double onward_m = 0;               ///< from the next instant to the one after
+};
+
+/// Where the slots are next: whoever can reach the own cell stands on it; everybody else goes toward what is wanted as
+/// far as walking allows and takes the best free cell near that point (cells of the picture whose owner is late are
+/// preferred a little). All results are distinct, can be stood on and are at most `longest_m` away on a free straight
+/// way; where that cannot be had beside all the owners, some owners give way, too. O(people on the way x cells near)
+[[nodiscard]] std::vector<CellIndex> snap(const SnapTask& task);
+
+}  // namespace footlight::planner

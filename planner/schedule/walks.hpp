@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "planner/schedule/ways.hpp"
+
+namespace footlight::planner {
+
+/// Everybody walks from `from[i]` to `to[i]` between two instants; any other way of handing out the targets is as good.
+struct LegTask {
+  const Ways* ways = nullptr;
+  std::span<const CellIndex> from;  ///< distinct
+  std::span<const CellIndex> to;    ///< distinct; to[i] is meant for from[i]
+  double longest_m = 0;             ///< walks longer than this are too fast
+  double clearance_m = 0.5;
+};
+
+struct Leg {
+  std::vector<std::uint32_t> target_of;  ///< position in `to` for each of `from`, a bijection
+  int exchanges = 0;
+  int conflicts = 0;  ///< pairs below the clearance that could not be solved; such a plan is refused
+  bool walkable = true;  ///< every walk is short enough and clear of blocked cells
+};
+
+/// Hands out the targets so that nobody comes too close: exchange first; where a limit forbids the exchange the arcs
+/// that conflict are made dearer, and the people among targets near their own are matched again until no conflict is
+/// left. A pairing that is not walkable at the start is replaced by the exact one under the limits where there is one.
+[[nodiscard]] Leg settle(const LegTask& task);
+
+/// Pairs of people who come nearer than the clearance.
+[[nodiscard]] int conflicts(const LegTask& task, const std::vector<std::uint32_t>& target_of);
+
+}  // namespace footlight::planner
