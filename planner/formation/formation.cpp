@@ -57,8 +57,8 @@ Drawing draw(const DrawingTask& task) {
     drawing.touched += (*task.shares)[i] > 0 ? 1 : 0;
   }
   drawing.full = area > 0 ? std::max(1, static_cast<int>(std::lround(area))) : 0;
-  const int wanted = std::min(std::clamp(drawing.full, std::min(task.least, task.most), task.most),
-                              static_cast<int>(order.size()));
+  const int wanted =
+      std::min(std::clamp(drawing.full, std::min(task.least, task.most), task.most), static_cast<int>(order.size()));
   // Rounding makes ties of what is equal but for the last bits; then the even pattern decides.
   const auto share = [&](CellIndex cell) { return std::round((*task.shares)[cell.at()] * 1e6); };
   if (drawing.touched > 0) {

@@ -27,17 +27,18 @@ struct Drawing {
 
 struct DrawingTask {
   const Grid* grid = nullptr;
-  const std::vector<double>* shares = nullptr;      ///< picture in each cell
-  const CellFlags* usable = nullptr;                ///< cells that may be chosen
+  const std::vector<double>* shares = nullptr;        ///< picture in each cell
+  const CellFlags* usable = nullptr;                  ///< cells that may be chosen
   const std::vector<std::uint32_t>* ranks = nullptr;  ///< even_ranks
-  int most = 0;                                     ///< people there are
-  int least = 0;                                    ///< people who must be drawn because the reserve cannot hold them
-  std::span<const CellIndex> when_blank;            ///< the picture to widen when this one is blank; may be empty
+  int most = 0;                                       ///< people there are
+  int least = 0;                                      ///< people who must be drawn because the reserve cannot hold them
+  std::span<const CellIndex> when_blank;              ///< the picture to widen when this one is blank; may be empty
 };
 
-/// The cells of a frame (Li 2020 Eq. 5-6): as many as the picture's area fills, within [least, most]. They are the cells
-/// with the most picture, so T_g is the share of the last one chosen; among cells with equal shares an even pattern
-/// decides. Where there must be more people than cells with picture the picture is widened by the cells nearest to it.
+/// The cells of a frame (Li 2020 Eq. 5-6): as many as the picture's area fills, within [least, most]. They are the
+/// cells with the most picture, so T_g is the share of the last one chosen; among cells with equal shares an even
+/// pattern decides. Where there must be more people than cells with picture the picture is widened by the cells nearest
+/// to it.
 [[nodiscard]] Drawing draw(const DrawingTask& task);
 
 /// The order in which reserve cells are given up: the first `n` of the result are the ones that n people in the reserve

@@ -40,10 +40,10 @@ struct Placement {
 
 struct PlacementTask {
   const Stage* stage = nullptr;
-  const CellFlags* usable = nullptr;    ///< for pictures
+  const CellFlags* usable = nullptr;  ///< for pictures
   Fit fit = Fit::area;
-  const Mask* largest = nullptr;        ///< the key frame with the most picture
-  Box extent;                           ///< of all key frames, pixels
+  const Mask* largest = nullptr;  ///< the key frame with the most picture
+  Box extent;                     ///< of all key frames, pixels
   int people = 1;
 };
 

@@ -67,9 +67,8 @@ class Matcher {
 
   /// Which members of each region belong to which shipment: everybody near to the anchor of the other end, exactly.
   [[nodiscard]] std::vector<Positions> split(std::span<const CellIndex> cells, const std::vector<Region>& regions,
-                                             const std::vector<Shipment>& shipments,
-                                             std::uint32_t Shipment::*own, std::uint32_t Shipment::*other,
-                                             const std::vector<Load>& others) const {
+                                             const std::vector<Shipment>& shipments, std::uint32_t Shipment::*own,
+                                             std::uint32_t Shipment::*other, const std::vector<Load>& others) const {
     std::vector<Positions> parts(shipments.size());
     std::vector<Positions> of_region(regions.size());
     for (std::uint32_t s = 0; s < shipments.size(); ++s) of_region[shipments[s].*own].push_back(s);

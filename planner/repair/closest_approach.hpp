@@ -32,7 +32,8 @@ struct NearPair {
 };
 
 /// Every pair whose walks come nearer than `reach_m`, ascending (a, b). The time is cut into slices in which nobody
-/// walks more than the reach, and each slice looks into neighbouring buckets only. O(slices x people in a neighbourhood)
+/// walks more than the reach, and each slice looks into neighbouring buckets only. O(slices x people in a
+/// neighbourhood)
 [[nodiscard]] std::vector<NearPair> near_pairs(std::span<const Walk> walks, double reach_m);
 
 /// The nearest two of all; nothing comes nearer than `distance_m`. Infinity and 0, 0 for one person.

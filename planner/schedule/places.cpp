@@ -15,8 +15,13 @@ constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 class Places {
  public:
   Places(const std::vector<std::vector<Choice>>& choices, std::size_t cells)
-      : choices_(choices), holder_(cells, kNobody), price_(cells, 0), distance_(cells, kFar), from_(cells, kNobody),
-        place_(choices.size()), has_place_(choices.size(), 0) {}
+      : choices_(choices),
+        holder_(cells, kNobody),
+        price_(cells, 0),
+        distance_(cells, kFar),
+        from_(cells, kNobody),
+        place_(choices.size()),
+        has_place_(choices.size(), 0) {}
 
   bool seat(std::uint32_t person) {
     touched_.clear();

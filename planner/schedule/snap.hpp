@@ -11,12 +11,12 @@ namespace footlight::planner {
 /// One step of everybody from cells to cells.
 struct SnapTask {
   const Ways* ways = nullptr;
-  std::span<const CellIndex> now;    ///< where the slots are; distinct
-  std::span<const CellIndex> own;    ///< the slots' own cells at the next instant; distinct
-  std::span<const Wanted> wanted;    ///< at the next instant
-  std::span<const Wanted> onward;    ///< at the instant after that; empty at the end
-  double longest_m = 0;              ///< from now to the next instant
-  double onward_m = 0;               ///< from the next instant to the one after
+  std::span<const CellIndex> now;  ///< where the slots are; distinct
+  std::span<const CellIndex> own;  ///< the slots' own cells at the next instant; distinct
+  std::span<const Wanted> wanted;  ///< at the next instant
+  std::span<const Wanted> onward;  ///< at the instant after that; empty at the end
+  double longest_m = 0;            ///< from now to the next instant
+  double onward_m = 0;             ///< from the next instant to the one after
 };
 
 /// Where the slots are next: whoever can reach the own cell stands on it; everybody else goes toward what is wanted as

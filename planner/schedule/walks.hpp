@@ -21,7 +21,7 @@ struct LegTask {
 struct Leg {
   std::vector<std::uint32_t> target_of;  ///< position in `to` for each of `from`, a bijection
   int exchanges = 0;
-  int conflicts = 0;  ///< pairs below the clearance that could not be solved; such a plan is refused
+  int conflicts = 0;     ///< pairs below the clearance that could not be solved; such a plan is refused
   bool walkable = true;  ///< every walk is short enough and clear of blocked cells
 };
 

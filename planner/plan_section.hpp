@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/film.hpp"
+#include "core/plan.hpp"
+#include "core/show.hpp"
+#include "planner/progress.hpp"
+#include "planner/schedule/ways.hpp"
+
+namespace footlight::planner {
+
+/// An instant at which everybody should stand in one formation.
+struct Station {
+  SectionIndex section;
+  double count = 1;
+  Instant arrive;
+  Instant depart;                ///< later than `arrive` while the formation is held
+  std::optional<int> frame;      ///< of the video's file
+  std::vector<CellIndex> cells;  ///< distinct, one for each performer; in the order of performers when `pinned`
+  bool pinned = false;           ///< who stands where is given
+  bool exact = false;            ///< nobody may be elsewhere; else the drawing gives way where walking takes too long
+  int in_picture = 0;            ///< how many of the cells are in the picture
+};
+
+/// What one section asks for, before anybody walks.
+struct SectionPlan {
+  PlanSection section;
+  std::vector<Station> stations;  ///< ascending by time
+};
+
+/// Largest speed at which everybody may walk in a section, m/s: the section's limit (or the stage's), and nobody's own.
+[[nodiscard]] double section_speed(const Show& show, const Section& section);
+/// "file:line:col: error: sections[i]: text (hint)"
+[[nodiscard]] std::string section_message(const Show& show, SectionIndex section, std::string text, std::string hint);
+
+/// Turns a section's source into formations of exactly as many cells as there are performers.
+/// @param film of a video or an image, else absent
+/// @return ErrorKind::input, positioned, when the floor, or the largest picture with the reserve, cannot hold
+/// everybody; interrupted when told to stop. Pure.
+[[nodiscard]] Result<SectionPlan> plan_section(const Show& show, SectionIndex section, const std::optional<Film>& film,
+                                               const Ways& ways, const Progress& progress);
+
+}  // namespace footlight::planner

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/plan_show.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "planner/parallel.hpp"
+#include "planner/plan_section.hpp"
+#include "planner/refusal.hpp"
+#include "planner/repair/closest_approach.hpp"
+#include "planner/schedule/chain.hpp"
+#include "planner/shortest.hpp"
+#include "planner/validate.hpp"
+
+namespace footlight::planner {
+namespace {
+
+Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
+
+class ShowPlanner {
+ public:
+  ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress)
+      : show_(show), films_(films), progress_(progress), clearance_m_(show.stage.clearance_m) {
+    for (const Performer& performer : show.performers) {
+      clearance_m_ = std::max(clearance_m_, 2 * performer.radius_m);
+    }
+  }
+
+  Result<Planned> run() {
+    FL_CHECK(films_.size() == show_.sections.size());
+    if (show_.performers.empty()) return input_error(show_.file + ": error: performers: the show has nobody in it");
+    if (show_.sections.empty()) return input_error(show_.file + ": error: sections: the show has no section");
+    const Ways ways(show_.stage, show_.stage.clearance_m / 2);
+    if (auto error = collect_stations(ways)) return *error;
+    auto chain = walk_through({&show_, &ways, &stations_, clearance_m_}, progress_);
+    if (!chain) return interrupted();
+    describe();
+    name_people(*chain);
+    write_tracks(*chain);
+    write_formations(*chain);
+    note_what_gave_way(*chain);
+    if (!write_facts(*chain)) return interrupted();
+    progress_.tell("validate", 0);
+    const Verdict verdict = validate(planned_.plan);
+    planned_.plan.valid = verdict.valid();
+    planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
+    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
+      planned_.shortest.push_back(shortest_duration(show_, *chain, SectionIndex::of(s), planned_.plan));
+    }
+    progress_.tell("validate", 1);
+    return std::move(planned_);
+  }
+
+ private:
+  std::optional<Error> collect_stations(const Ways& ways) {
+    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
+      auto section = plan_section(show_, SectionIndex::of(s), films_[s], ways, progress_);
+      if (!section) return section.error();
+      for (Station& station : section->stations) {
+        if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
+        stations_.push_back(std::move(station));
+      }
+      planned_.plan.sections.push_back(std::move(section->section));
+    }
+    return std::nullopt;
+  }
+
+  /// A section that begins when the one before ends has no time to walk: a film takes people as they stand, anything
+  /// else cannot be walked and is refused by what it would take.
+  void join(Station& station) const {
+    if (station.frame) station.exact = false;
+    station.arrive = stations_.back().depart + milliseconds(1);
+    station.depart = std::max(station.depart, station.arrive);
+  }
+
+  void describe() {
+    Plan& plan = planned_.plan;
+    plan.title = show_.title;
+    plan.stage = show_.stage;
+    for (const Performer& performer : show_.performers) {
+      plan.performers.push_back(performer.id);
+      plan.radius_m.push_back(performer.radius_m);
+      plan.max_speed_mps.push_back(performer.max_speed_mps);
+    }
+  }
+
+  /// slot_[k][p] is where performer p stands in the list of stop k. The first formation with names decides who is who;
+  /// later ones are reached by name, whatever the walks are.
+  void name_people(const Chain& chain) {
+    const std::size_t people = show_.performers.size();
+    slot_.assign(chain.stops.size(), std::vector<std::uint32_t>(people));
+    std::iota(slot_[0].begin(), slot_[0].end(), 0U);
+    bool named = false;
+    for (std::size_t k = 0; k < chain.stops.size(); ++k) {
+      if (k > 0) {
+        for (std::size_t p = 0; p < people; ++p) slot_[k][p] = chain.legs[k - 1].target_of[slot_[k - 1][p]];
+      }
+      const Stop& stop = chain.stops[k];
+      if (!stop.station || !stations_[*stop.station].pinned) continue;
+      const std::vector<std::uint32_t> wanted = slots_by_name(stop, stations_[*stop.station]);
+      if (!named) {
+        std::vector<std::uint32_t> path_in(people);  // path that passes through each slot here
+        for (std::uint32_t path = 0; path < people; ++path) path_in[slot_[k][path]] = path;
+        for (std::size_t j = 0; j < k; ++j) {
+          const std::vector<std::uint32_t> before = slot_[j];
+          for (std::size_t p = 0; p < people; ++p) slot_[j][p] = before[path_in[wanted[p]]];
+        }
+      }
+      slot_[k] = wanted;
+      named = true;
+    }
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> slots_by_name(const Stop& stop, const Station& station) const {
+    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(show_.stage.grid.size()), 0);
+    for (std::uint32_t i = 0; i < stop.cells.size(); ++i) at_cell[stop.cells[i].at()] = i;
+    std::vector<std::uint32_t> slots;
+    for (const CellIndex cell : station.cells) slots.push_back(at_cell[cell.at()]);
+    return slots;
+  }
+
+  [[nodiscard]] CellIndex cell_of(const Chain& chain, std::size_t k, std::size_t performer) const {
+    return chain.stops[k].cells[slot_[k][performer]];
+  }
+
+  void write_tracks(const Chain& chain) {
+    planned_.plan.tracks.resize(show_.performers.size());
+    for (std::size_t p = 0; p < show_.performers.size(); ++p) {
+      std::vector<Mark>& track = planned_.plan.tracks[p];
+      // Before the first section everybody stands in the opening form.
+      if (chain.stops.front().arrive > kStart) track.push_back({kStart, cell_of(chain, 0, p)});
+      for (std::size_t k = 0; k < chain.stops.size(); ++k) {
+        const Stop& stop = chain.stops[k];
+        track.push_back({stop.arrive, cell_of(chain, k, p)});
+        if (stop.depart > stop.arrive) track.push_back({stop.depart, cell_of(chain, k, p)});
+      }
+    }
+  }
+
+  void write_formations(const Chain& chain) {
+    std::vector<int> number(show_.sections.size(), 0);
+    for (std::size_t k = 0; k < chain.stops.size(); ++k) {
+      const Stop& stop = chain.stops[k];
+      if (!stop.station) continue;
+      const Station& station = stations_[*stop.station];
+      Formation formation;
+      formation.id = fmt::format("{}/{}", show_.sections[station.section.at()].name, ++number[station.section.at()]);
+      formation.section = station.section;
+      formation.count = station.count;
+      formation.time = station.arrive;
+      formation.frame = station.frame;
+      for (std::size_t p = 0; p < show_.performers.size(); ++p) formation.cells.push_back(cell_of(chain, k, p));
+      formation.in_picture = station.in_picture - stop.given_way;
+      planned_.plan.formations.push_back(std::move(formation));
+    }
+  }
+
+  void note_what_gave_way(const Chain& chain) {
+    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
+      long given = 0;
+      long drawn = 0;
+      int formations = 0;
+      for (const Stop& stop : chain.stops) {
+        if (stop.section.at() != s || !stop.station) continue;
+        given += stop.given_way;
+        drawn += stations_[*stop.station].in_picture;
+        formations += stop.given_way > 0 ? 1 : 0;
+      }
+      if (given == 0) continue;
+      planned_.plan.sections[s].notes.push_back(
+          fmt::format("the drawing gives way: {} of {} places in {} formations are not reached in time, since nobody "
+                      "walks faster than {:g} m/s",
+                      given, drawn, formations, section_speed(show_, show_.sections[s])));
+    }
+  }
+
+  bool write_facts(const Chain& chain) {
+    Plan& plan = planned_.plan;
+    plan.transitions.resize(chain.legs.size());
+    return for_each_index(chain.legs.size(), "facts", progress_, [&](std::size_t k) {
+      std::vector<Walk> walks(show_.performers.size());
+      TransitionFacts& facts = plan.transitions[k];
+      facts.start = chain.stops[k].depart;
+      facts.end = chain.stops[k + 1].arrive;
+      for (std::size_t p = 0; p < walks.size(); ++p) {
+        walks[p] = {show_.stage.grid.centre(cell_of(chain, k, p)), show_.stage.grid.centre(cell_of(chain, k + 1, p))};
+        const double walk_m = distance(walks[p].from, walks[p].to);
+        if (walk_m > facts.longest_walk_m) {
+          facts.longest_walk_m = walk_m;
+          facts.longest_walker = PerformerIndex::of(p);
+        }
+      }
+      const NearPair nearest = nearest_pair(walks, show_.stage.grid.pitch_m());
+      facts.clearance_m = nearest.approach.distance_m;
+      facts.closest_a = PerformerIndex(nearest.a);
+      facts.closest_b = PerformerIndex(nearest.b);
+      facts.closest_at = facts.start + seconds(nearest.approach.share * to_seconds(facts.end - facts.start));
+      facts.tolerated_lag_s = tolerated_lag_s(plan, facts.start, facts.end);
+    });
+  }
+
+  const Show& show_;
+  const std::vector<std::optional<Film>>& films_;
+  const Progress& progress_;
+  double clearance_m_;
+  std::vector<Station> stations_;
+  std::vector<std::vector<std::uint32_t>> slot_;
+  Planned planned_;
+};
+
+}  // namespace
+
+Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress) {
+  return ShowPlanner(show, films, progress).run();
+}
+
+}  // namespace footlight::planner

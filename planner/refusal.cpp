@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/refusal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace footlight::planner {
+namespace {
+
+/// A walk from mark to mark that is too fast.
+struct FastWalk {
+  std::size_t performer = 0;
+  Mark from;
+  Mark to;
+  double walk_m = 0;
+  double excess = 0;  ///< times the limit
+  double limit_mps = 0;
+};
+
+/// The section whose limits hold at an instant: the first one that ends after it.
+std::size_t section_of(const Plan& plan, Instant instant) {
+  std::size_t s = 0;
+  while (s + 1 < plan.sections.size() && plan.sections[s].end <= instant) ++s;
+  return s;
+}
+
+std::vector<std::optional<FastWalk>> fastest_walks(const Plan& plan) {
+  std::vector<std::optional<FastWalk>> worst(plan.sections.size());
+  for (std::size_t p = 0; p < plan.tracks.size(); ++p) {
+    const auto& track = plan.tracks[p];
+    for (std::size_t m = 0; m + 1 < track.size(); ++m) {
+      if (track[m].cell == track[m + 1].cell) continue;
+      const std::size_t s = section_of(plan, track[m].time);
+      const double limit = plan.max_speed_mps[p] > 0 ? plan.max_speed_mps[p] : plan.sections[s].max_speed_mps;
+      const double walk_m = distance(plan.stage.grid.centre(track[m].cell), plan.stage.grid.centre(track[m + 1].cell));
+      const double excess = walk_m / to_seconds(track[m + 1].time - track[m].time) / limit;
+      if (excess <= 1 + 1e-6 || (worst[s] && worst[s]->excess >= excess)) continue;
+      worst[s] = FastWalk{p, track[m], track[m + 1], walk_m, excess, limit};
+    }
+  }
+  return worst;
+}
+
+std::string count_text(double count) { return fmt::format("{:g}", std::round(count * 100) / 100); }
+
+std::string too_fast_text(const Show& show, const Plan& plan, std::size_t section, const FastWalk& walk) {
+  const double first = show.tempo.count_at(walk.from.time);
+  const double last = show.tempo.count_at(walk.to.time);
+  const double needed_s = walk.walk_m / walk.limit_mps;
+  const double given_s = to_seconds(walk.to.time - walk.from.time);
+  const double later = std::ceil((needed_s - given_s) * show.tempo.bpm_at(last) / 60 - 1e-9);
+  const double slower = std::floor((last - first) * 60 / needed_s + 1e-9);
+  const std::string what = fmt::format(
+      "performer {} would walk {:.1f} m from {} to {} between count {} and count {} at {:.1f} m/s, {:.1f} times the "
+      "limit of {:g} m/s",
+      plan.performers[walk.performer], walk.walk_m, plan.stage.grid.name(walk.from.cell),
+      plan.stage.grid.name(walk.to.cell), count_text(first), count_text(last), walk.excess * walk.limit_mps,
+      walk.excess, walk.limit_mps);
+  const bool held = section > 0 && show.sections[section - 1].hold_counts > 0;
+  std::string hint = fmt::format("start the section {:g} count{} later", later, later == 1 ? "" : "s");
+  hint += slower >= 1 ? ", " : " or ";
+  hint += held ? "hold the one before shorter" : "end the one before earlier";
+  if (slower >= 1) hint += fmt::format(", or slow the music to {:g} counts a minute", slower);
+  return section_message(show, SectionIndex::of(section), what, hint);
+}
+
+std::string other_text(const Show& show, const Plan& plan, const Violation& violation, std::uint64_t more) {
+  std::string hint;
+  switch (violation.kind) {
+    case Violation::Kind::too_close:
+      hint = "a longer section, a larger pitch or a smaller clearance";
+      break;
+    case Violation::Kind::into_blocked:
+      hint = "more time, so that everybody can go around the blocked cells";
+      break;
+    default:
+      hint = "please report this: the planner should not do it";
+  }
+  std::string what = violation.text;
+  if (more > 0) what += fmt::format("; {} more like it in the show", more);
+  return section_message(show, SectionIndex::of(section_of(plan, violation.time)), what, hint);
+}
+
+}  // namespace
+
+std::vector<std::string> refusal_texts(const Show& show, const Plan& plan, const Verdict& verdict) {
+  std::vector<std::string> texts;
+  if (verdict.valid()) return texts;
+  const auto worst = fastest_walks(plan);
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < worst.size(); ++s) {
+    if (worst[s]) order.push_back(s);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return worst[a]->excess > worst[b]->excess; });
+  for (const std::size_t s : order) texts.push_back(too_fast_text(show, plan, s, *worst[s]));
+  if (!texts.empty()) return texts;
+  if (verdict.first.empty()) return {"the plan breaks a limit that the judge does not name"};
+  texts.push_back(other_text(show, plan, verdict.first.front(), verdict.violations - 1));
+  return texts;
+}
+
+}  // namespace footlight::planner

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/schedule/chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/hierarchy/hierarchical_matching.hpp"
+#include "planner/parallel.hpp"
+#include "planner/schedule/snap.hpp"
+
+namespace footlight::planner {
+namespace {
+
+constexpr double kRounding_m = 1e-9;
+/// On the way around blocked cells there is a stop whenever somebody may have walked so many pitches.
+constexpr double kViaPitches = 4.5;
+
+class ChainBuilder {
+ public:
+  ChainBuilder(const ChainTask& task, const Progress& progress)
+      : task_(task),
+        progress_(progress),
+        ways_(*task.ways),
+        grid_(task.ways->grid()),
+        stations_(*task.stations),
+        reserve_(static_cast<std::size_t>(grid_.size()), 0) {
+    for (const CellIndex cell : task.show->stage.reserve) reserve_[cell.at()] = 1;
+  }
+
+  std::optional<Chain> run() {
+    if (!pair_all()) return std::nullopt;
+    follow_slots();
+    for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
+    if (!pace()) return std::nullopt;
+    chain_.legs.resize(chain_.longest_m.size());
+    const bool done = for_each_index(chain_.legs.size(), "walks", progress_, [&](std::size_t k) {
+      chain_.legs[k] =
+          settle({&ways_, chain_.stops[k].cells, chain_.stops[k + 1].cells, chain_.longest_m[k], task_.clearance_m});
+    });
+    if (!done) return std::nullopt;
+    return std::move(chain_);
+  }
+
+ private:
+  bool pair_all() {
+    pairings_.resize(stations_.size() - 1);
+    return for_each_index(pairings_.size(), "pairing", progress_,
+                          [&](std::size_t k) { pairings_[k] = pair(stations_[k], stations_[k + 1]); });
+  }
+
+  /// Who waits in the reserve before and after stays where she is; the others as the section asks for.
+  [[nodiscard]] std::vector<std::uint32_t> pair(const Station& from, const Station& to) const {
+    std::vector<std::uint32_t> target_of(from.cells.size());
+    if (from.pinned && to.pinned) {
+      for (std::uint32_t i = 0; i < target_of.size(); ++i) target_of[i] = i;
+      return target_of;
+    }
+    constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+    std::vector<std::uint32_t> waiting(static_cast<std::size_t>(grid_.size()), kNone);
+    for (std::uint32_t j = 0; j < to.cells.size(); ++j) {
+      if (reserve_[to.cells[j].at()] != 0) waiting[to.cells[j].at()] = j;
+    }
+    std::vector<CellIndex> sources;
+    std::vector<CellIndex> targets;
+    std::vector<std::uint32_t> source_at;
+    std::vector<std::uint32_t> target_at;
+    std::vector<char> stays(to.cells.size(), 0);
+    for (std::uint32_t i = 0; i < from.cells.size(); ++i) {
+      const std::uint32_t same = waiting[from.cells[i].at()];
+      if (same != kNone) {
+        target_of[i] = same;
+        stays[same] = 1;
+      } else {
+        sources.push_back(from.cells[i]);
+        source_at.push_back(i);
+      }
+    }
+    for (std::uint32_t j = 0; j < to.cells.size(); ++j) {
+      if (stays[j] != 0) continue;
+      targets.push_back(to.cells[j]);
+      target_at.push_back(j);
+    }
+    const PlannerOptions& options = task_.show->sections[to.section.at()].planner;
+    const auto matched = pair_formations(grid_, sources, targets, options);
+    for (std::size_t i = 0; i < matched.size(); ++i) target_of[source_at[i]] = target_at[matched[i]];
+    return target_of;
+  }
+
+  void follow_slots() {
+    const std::size_t people = stations_.front().cells.size();
+    slots_.assign(stations_.size(), std::vector<CellIndex>(people));
+    for (std::uint32_t slot = 0; slot < people; ++slot) {
+      std::uint32_t at = slot;
+      for (std::size_t s = 0; s < stations_.size(); ++s) {
+        slots_[s][slot] = stations_[s].cells[at];
+        if (s + 1 < stations_.size()) at = pairings_[s][at];
+      }
+    }
+  }
+
+  void add_stop(std::size_t s) {
+    const Station& station = stations_[s];
+    if (s > 0) add_vias(s);
+    if (s > 0) link(station.section, station.arrive);
+    Stop stop;
+    stop.count = station.count;
+    stop.arrive = station.arrive;
+    stop.depart = station.depart;
+    stop.station = s;
+    stop.section = station.section;
+    stop.own = slots_[s];
+    chain_.stops.push_back(std::move(stop));
+  }
+
+  void link(SectionIndex section, Instant arrive) {
+    const Show& show = *task_.show;
+    const double speed = section_speed(show, show.sections[section.at()]);
+    const double walked_s = to_seconds(arrive - chain_.stops.back().depart);
+    chain_.longest_m.push_back(std::max(0.0, speed * walked_s - kRounding_m));
+  }
+
+  /// Between two exact formations, where blocked cells are in somebody's way.
+  void add_vias(std::size_t s) {
+    if (ways_.open() || !stations_[s].exact) return;
+    bool straight = true;
+    for (std::size_t i = 0; i < slots_[s].size() && straight; ++i) {
+      straight = ways_.straight(grid_.centre(slots_[s - 1][i]), grid_.centre(slots_[s][i]));
+    }
+    const Show& show = *task_.show;
+    const Instant start = stations_[s - 1].depart;
+    const double total_s = to_seconds(stations_[s].arrive - start);
+    const double speed = section_speed(show, show.sections[stations_[s].section.at()]);
+    const int pieces = static_cast<int>(std::floor(total_s * speed / (kViaPitches * grid_.pitch_m())));
+    if (straight || pieces < 2) return;
+    for (int piece = 1; piece < pieces; ++piece) {
+      Stop stop;
+      stop.arrive = stop.depart = start + seconds(total_s * piece / pieces);
+      stop.count = show.tempo.count_at(stop.arrive);
+      stop.section = stations_[s].section;
+      link(stop.section, stop.arrive);
+      chain_.stops.push_back(std::move(stop));
+    }
+  }
+
+  [[nodiscard]] bool exact(const Stop& stop) const { return stop.station && stations_[*stop.station].exact; }
+  [[nodiscard]] bool ends_section(const Stop& stop) const {
+    return stop.station && (*stop.station + 1 == stations_.size() ||
+                            stations_[*stop.station + 1].section != stations_[*stop.station].section);
+  }
+
+  bool pace() {
+    std::vector<PaceInstant> instants;
+    std::vector<std::size_t> next_formation(chain_.stops.size());
+    for (std::size_t k = chain_.stops.size(); k-- > 0;) {
+      next_formation[k] = chain_.stops[k].station ? k : next_formation[k + 1];
+    }
+    for (std::size_t k = 0; k < chain_.stops.size(); ++k) {
+      const Stop& stop = chain_.stops[k];
+      // On the way everybody heads for the formation at its end.
+      instants.push_back({chain_.stops[next_formation[k]].own, exact(stop) || ends_section(stop) || !stop.station,
+                          k < chain_.longest_m.size() ? chain_.longest_m[k] : 0.0});
+    }
+    auto wanted = leave_early(ways_, instants, reserve_);
+    chain_.stops.front().cells = chain_.stops.front().own;
+    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
+      if (progress_.stopped()) return false;
+      Stop& stop = chain_.stops[k];
+      if (exact(stop)) {
+        stop.cells = stop.own;
+        continue;
+      }
+      if (!stop.station) aim_on_the_way(k, next_formation[k], wanted[k]);
+      const std::span<const Wanted> onward =
+          k + 1 < wanted.size() ? std::span<const Wanted>(wanted[k + 1]) : std::span<const Wanted>();
+      stop.cells = snap({&ways_, chain_.stops[k - 1].cells, instants[k].own, wanted[k], onward, chain_.longest_m[k - 1],
+                         instants[k].longest_m});
+      for (std::size_t i = 0; i < stop.own.size(); ++i) {
+        stop.given_way += stop.cells[i] != stop.own[i] && reserve_[stop.own[i].at()] == 0 ? 1 : 0;
+      }
+    }
+    return true;
+  }
+
+  /// Everybody uses the time that is left evenly.
+  void aim_on_the_way(std::size_t k, std::size_t goal, std::vector<Wanted>& wanted) const {
+    const Stop& before = chain_.stops[k - 1];
+    const double part =
+        to_seconds(chain_.stops[k].arrive - before.depart) / to_seconds(chain_.stops[goal].arrive - before.depart);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const Point here = grid_.centre(before.cells[i]);
+      const Point there = grid_.centre(chain_.stops[goal].own[i]);
+      const double length_m = ways_.toward(here, there, 0).length_m;
+      wanted[i] = {std::isfinite(length_m) ? ways_.toward(here, there, part * length_m).at : here, false};
+    }
+  }
+
+  const ChainTask& task_;
+  const Progress& progress_;
+  const Ways& ways_;
+  const Grid& grid_;
+  const std::vector<Station>& stations_;
+  CellFlags reserve_;
+  std::vector<std::vector<std::uint32_t>> pairings_;
+  std::vector<std::vector<CellIndex>> slots_;
+  Chain chain_;
+};
+
+}  // namespace
+
+std::optional<Chain> walk_through(const ChainTask& task, const Progress& progress) {
+  return ChainBuilder(task, progress).run();
+}
+
+}  // namespace footlight::planner
