@@ -41,7 +41,8 @@ void Walks::add_track(const Grid& grid, std::span<const Mark> marks) {
   std::vector<Stand> track;
   track.reserve(marks.size());
   for (const Mark& mark : marks) {
-    if (static_cast<int>(mark.cell.value()) < grid.size()) track.push_back({mark.time, grid.centre(mark.cell)});
+    if (static_cast<int>(mark.cell.value()) < grid.size())
+      track.push_back({mark.time, mark.cell, grid.centre(mark.cell)});
   }
   const auto earlier = [](const Stand& a, const Stand& b) { return a.time < b.time; };
   if (!std::is_sorted(track.begin(), track.end(), earlier)) std::stable_sort(track.begin(), track.end(), earlier);

@@ -13,6 +13,7 @@ namespace footlight::planner::judge {
 /// Somebody stands on the middle of a cell.
 struct Stand {
   Instant time;
+  CellIndex cell;
   Point at;
 };
 
