@@ -58,7 +58,8 @@ double TempoMap::bpm_at(double count) const {
 }
 
 std::string TempoMap::measure_beat(double count) const {
-  const double beats = count - 1;
+  // Rounded first, so that a count a nanosecond before a measure is not that measure's "beat 5 of 4".
+  const double beats = std::round((count - 1) * 1e4) / 1e4;
   const double measure = std::floor(beats / beats_per_measure_);
   const double beat = beats - measure * beats_per_measure_ + 1;
   char text[64];

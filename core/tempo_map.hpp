@@ -32,7 +32,8 @@ class TempoMap {
   [[nodiscard]] double bpm_at(double count) const;
   /// Time of `counts` counts that begin at `count`.
   [[nodiscard]] Duration span(double count, double counts) const { return at(count + counts) - at(count); }
-  /// "measure:beat", both from 1, as "17:3"; a decimal part of the count is kept as "17:3.5".
+  /// "measure:beat", both from 1, as "17:3"; a decimal part of the count is kept as "17:3.5",
+  /// to 1/10,000.
   [[nodiscard]] std::string measure_beat(double count) const;
   [[nodiscard]] int beats_per_measure() const { return beats_per_measure_; }
   [[nodiscard]] const std::vector<TempoChange>& changes() const { return changes_; }

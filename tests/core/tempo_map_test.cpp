@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/tempo_map.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "core/rng.hpp"
+
+namespace footlight {
+namespace {
+
+TempoMap changing() { return *TempoMap::from({{1, 120}, {9, 60}, {11, 240}}, 4); }
+
+TEST(TempoMap, PutsCountOneAtTimeZero) {
+  EXPECT_EQ(TempoMap(120).at(1), kStart);
+  EXPECT_EQ(changing().at(1), kStart);
+}
+
+TEST(TempoMap, PutsCountNAtNMinusOneBeats) {
+  EXPECT_EQ(TempoMap(120).at(5), instant_at(2));
+  EXPECT_EQ(TempoMap(90).at(2), instant_at(2.0 / 3));
+  EXPECT_EQ(TempoMap(120).at(1.5), instant_at(0.25));
+}
+
+TEST(TempoMap, GoesOnBeforeCountOneWithTheFirstTempo) {
+  EXPECT_EQ(changing().at(-1), instant_at(-1));
+  EXPECT_DOUBLE_EQ(changing().count_at(instant_at(-1)), -1);
+  EXPECT_EQ(changing().bpm_at(-100), 120);
+}
+
+TEST(TempoMap, AddsUpStretchesOfDifferentTempo) {
+  const TempoMap map = changing();
+  EXPECT_EQ(map.at(9), instant_at(4));
+  EXPECT_EQ(map.at(10), instant_at(5));
+  EXPECT_EQ(map.at(11), instant_at(6));
+  EXPECT_EQ(map.at(15), instant_at(7));
+}
+
+TEST(TempoMap, HasTheNewTempoFromItsCountOn) {
+  const TempoMap map = changing();
+  EXPECT_EQ(map.bpm_at(8.999), 120);
+  EXPECT_EQ(map.bpm_at(9), 60);
+  EXPECT_EQ(map.bpm_at(11), 240);
+  EXPECT_EQ(map.bpm_at(1e6), 240);
+}
+
+TEST(TempoMap, SpansAreTimesBetweenCounts) {
+  EXPECT_EQ(changing().span(7, 4), seconds(1 + 2));
+  EXPECT_EQ(changing().span(11, 0), Duration(0));
+}
+
+TEST(TempoMap, RoundsToTheNearestNanosecond) {
+  EXPECT_EQ(TempoMap(90).at(2).time_since_epoch(), Duration(666'666'667));
+  EXPECT_EQ(TempoMap(70).at(2).time_since_epoch(), Duration(857'142'857));
+}
+
+TEST(TempoMapProperty, CountOfATimeOfACountIsTheCount) {
+  const bool held = rc::check([](std::uint64_t seed) {
+    Rng rng(seed);
+    std::vector<TempoChange> changes{{1, 1 + 299 * rng.uniform()}};
+    for (std::uint64_t k = rng.below(6); k > 0; --k) {
+      changes.push_back({changes.back().count + 0.5 + 20 * rng.uniform(), 30 + 299 * rng.uniform()});
+    }
+    const TempoMap map = *TempoMap::from(changes, 3);
+    const double count = -5 + 200 * rng.uniform();
+    RC_ASSERT(std::abs(map.count_at(map.at(count)) - count) < 1e-7);
+    RC_ASSERT(map.at(count) < map.at(count + 1e-3));
+  });
+  EXPECT_TRUE(held);
+}
+
+TEST(TempoMap, TellsMeasureAndBeatFromOne) {
+  const TempoMap map(120, 4);
+  EXPECT_EQ(map.measure_beat(1), "1:1");
+  EXPECT_EQ(map.measure_beat(4), "1:4");
+  EXPECT_EQ(map.measure_beat(5), "2:1");
+  EXPECT_EQ(map.measure_beat(67), "17:3");
+  EXPECT_EQ(map.measure_beat(67.5), "17:3.5");
+  EXPECT_EQ(map.measure_beat(0), "0:4");
+  EXPECT_EQ(TempoMap(120, 3).measure_beat(4), "2:1");
+}
+
+TEST(TempoMap, NeverTellsABeatThatTheMeasureHasNot) {
+  // Counts that come from times may lie a rounding below a whole count.
+  EXPECT_EQ(TempoMap(120, 4).measure_beat(5 - 1e-10), "2:1");
+  EXPECT_EQ(TempoMap(120, 4).measure_beat(3 - 1e-10), "1:3");
+}
+
+TEST(TempoMap, RefusesWhatIsNoTempoMap) {
+  const auto message = [](std::vector<TempoChange> changes, int beats) {
+    return TempoMap::from(std::move(changes), beats).error();
+  };
+  EXPECT_EQ(message({{1, 120}}, 0), input_error("a measure has at least one beat"));
+  EXPECT_EQ(message({}, 4), input_error("the first tempo begins at count 1"));
+  EXPECT_EQ(message({{2, 120}}, 4), input_error("the first tempo begins at count 1"));
+  EXPECT_EQ(message({{1, 0.5}}, 4), input_error("a tempo lies between 1 and 1000 counts a minute"));
+  EXPECT_EQ(message({{1, 120}, {5, 1001}}, 4), input_error("a tempo lies between 1 and 1000 counts a minute"));
+  EXPECT_EQ(message({{1, std::nan("")}}, 4), input_error("a tempo lies between 1 and 1000 counts a minute"));
+  EXPECT_EQ(message({{1, 120}, {5, 90}, {5, 80}}, 4), input_error("the counts of tempo changes increase"));
+  EXPECT_EQ(message({{1, 120}, {std::nan(""), 90}}, 4), input_error("the counts of tempo changes increase"));
+}
+
+TEST(TempoMapDeathTest, ATempoOfZeroIsAProgrammerError) { EXPECT_DEATH(TempoMap(0.0), "bpm > 0"); }
+
+}  // namespace
+}  // namespace footlight
