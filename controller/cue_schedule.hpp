@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ namespace footlight::controller {
 struct Switch {
   Instant time;
   std::string cause;  ///< for traces and people: "growth/12 announced", "growth/12"
+  /// The opening form and the end of a set, where the show may wait for GO; the next switch has the same show time.
+  bool settled = false;
+  std::optional<std::size_t> cue;  ///< position in cue_plays() of the cue that plays it; none for the opening
 };
 
 /// Lamps that somebody could take for the own one: same look, near the own goal.
@@ -36,6 +40,7 @@ class CueSchedule {
 
   /// Entry i is look i; entry 0 is dark; at most 254 entries.
   [[nodiscard]] const std::vector<Look>& looks() const { return looks_; }
+  /// Ascending by time; the first is the opening, lit before the show starts.
   [[nodiscard]] const std::vector<Switch>& switches() const { return switches_; }
   /// All 32 channels of a node from switch `k` until the next; unused channels are dark.
   [[nodiscard]] std::span<const LookIndex> looks_of(std::size_t k, NodeIndex node) const;
@@ -53,9 +58,20 @@ class CueSchedule {
   LampConfusion confusion_;
 };
 
+/// The byte of a plan that all frames of a show carry: the last two digits of its hash; a sum over its marks where it
+/// has none. Drivers are made with it.
+[[nodiscard]] std::uint8_t plan_byte_of(const Plan& plan);
+
+/// Latch sequence of a switch on every wire, 1..240: the same after a restart of the controller.
+[[nodiscard]] constexpr drivers::Sequence sequence_of(std::size_t k) {
+  return static_cast<drivers::Sequence>(k % drivers::kLastSequence + 1);
+}
+
 /// Compiles a valid plan. Refused (ErrorKind::refused) for a plan that is not valid and, with the arithmetic, for a bus
 /// that cannot carry a switch's preloads and receipts before it is due with 30 % reserve.
+/// ErrorKind::input when the cues or the looks of the show cannot be played.
 /// @param drivers one for each bus of the rig, for their budgets
+/// Complexity: O(switches x (performers + cells + markers)). Deterministic.
 [[nodiscard]] Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                                  const std::vector<std::unique_ptr<drivers::Driver>>& drivers);
 

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/dry_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "controller/bus_loop.hpp"
+#include "controller/cue_engine.hpp"
+#include "controller/cue_list.hpp"
+#include "controller/cue_schedule.hpp"
+#include "drivers/registry.hpp"
+#include "sim/simulated_rig.hpp"
+
+namespace footlight::app {
+namespace {
+
+using controller::BusLoop;
+using controller::BusTarget;
+using controller::CueEngine;
+using controller::CuePlay;
+using controller::CueSchedule;
+
+constexpr Duration kSample = milliseconds(20);
+constexpr Duration kPostRoll = milliseconds(2500);     // time for the last lamps to be right
+constexpr Duration kHeartbeat = milliseconds(250);     // T0 of the trust model
+constexpr Duration kCompareAhead = microseconds(200);  // before the first latch of the next switch is handed over
+constexpr Duration kPaceStep = milliseconds(50);
+constexpr std::size_t kShownWrong = 10;
+constexpr int kMostAtOnce = 10'000;
+
+/// Time before the show for look tables, roll call and the opening.
+Duration pre_roll(const Rig& rig) {
+  std::vector<std::size_t> nodes(rig.buses.size(), 0);
+  for (const Node& node : rig.nodes) ++nodes[node.bus.at()];
+  const std::size_t most = nodes.empty() ? 0 : *std::ranges::max_element(nodes);
+  return milliseconds(5000) + static_cast<Duration::rep>(most) * milliseconds(250);
+}
+
+Duration run_length(const std::vector<CuePlay>& plays) {
+  Duration sum{};
+  for (const CuePlay& play : plays) sum += (play.to - play.from) + play.gap_after.value_or(controller::kShortestHold);
+  return sum;
+}
+
+/// One dry run under way.
+class DryRun {
+ public:
+  DryRun(const Show& show, const Plan& plan, Rig rig, std::vector<CuePlay> plays, const DryRunOptions& options)
+      : show_(show),
+        plan_(plan),
+        rig_(std::move(rig)),
+        options_(options),
+        plays_(std::move(plays)),
+        show_starts_(kStart + pre_roll(rig_)),
+        simulated_(rig_, options.faults, options.seed, show_starts_, run_length(plays_), clock_, options.trace) {}
+
+  Result<DryRunReport> run();
+
+ private:
+  Status<> connect();
+  void tick();
+  Instant next_instant() const;
+  void press_go();
+  void sample();
+  void compare_when_due();
+  void compare(std::size_t k);
+  void say_moment(const BusTarget& target);
+  void keep_pace(Instant next) const;
+  [[nodiscard]] bool exempt(NodeIndex node) const;
+  [[nodiscard]] bool dead(NodeIndex node) const;
+  [[nodiscard]] LookIndex should(std::size_t k, NodeIndex node, std::size_t channel) const {
+    return schedule_->looks_of(k, node)[channel];
+  }
+  template <class Visit>
+  void for_markers(Visit visit) const;
+  DryRunReport report();
+
+  const Show& show_;
+  const Plan& plan_;
+  Rig rig_;
+  const DryRunOptions& options_;
+  std::vector<CuePlay> plays_;
+  Instant show_starts_;
+  ManualClock clock_;
+  sim::SimulatedRig simulated_;
+  std::vector<std::unique_ptr<drivers::Driver>> drivers_;
+  std::optional<CueSchedule> schedule_;
+  std::optional<CueEngine> engine_;
+  std::vector<std::unique_ptr<BusLoop>> loops_;
+  std::vector<Instant> wishes_;
+  std::vector<sim::BusUse> use_before_;
+  Duration latch_ahead_{};
+
+  Instant go_at_ = kNever;
+  Instant sample_at_ = kNever;
+  Instant compare_at_ = kNever;
+  Instant ends_at_ = kNever;
+  std::optional<std::size_t> compared_;
+  std::optional<std::size_t> told_;
+  std::uint64_t samples_ = 0;
+  std::uint64_t right_ = 0;
+  std::uint64_t wrong_ = 0;
+  DryRunReport report_;
+};
+
+Status<> DryRun::connect() {
+  for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
+    const auto bus = BusIndex::of(b);
+    drivers::PortReference port;
+    switch (rig_.buses[b].kind) {
+      case BusKind::serial:
+        port = &simulated_.serial(bus);
+        break;
+      case BusKind::can:
+        port = &simulated_.can(bus);
+        break;
+      case BusKind::modbus_rtu:
+      case BusKind::modbus_tcp:
+        port = &simulated_.modbus(bus);
+        break;
+    }
+    auto driver =
+        drivers::make_driver(rig_.buses[b], drivers::node_addresses(rig_, bus), controller::plan_byte_of(plan_), port);
+    if (!driver) return driver.error();
+    latch_ahead_ = std::max(latch_ahead_, (*driver)->latch_time());
+    drivers_.push_back(std::move(driver).value());
+  }
+  auto schedule = controller::build_schedule(show_, plan_, rig_, drivers_);
+  if (!schedule) return schedule.error();
+  schedule_ = std::move(schedule).value();
+  for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
+    loops_.push_back(
+        std::make_unique<BusLoop>(*schedule_, drivers::node_addresses(rig_, BusIndex::of(b)), *drivers_[b]));
+  }
+  wishes_.assign(loops_.size(), kStart);
+  std::vector<Duration> notices(plays_.size());
+  const auto& switches = schedule_->switches();
+  for (std::size_t k = 1; k < switches.size(); ++k) {
+    if (!switches[k].cue || switches[k].cue == switches[k - 1].cue) continue;
+    for (const auto& loop : loops_) notices[*switches[k].cue] = std::max(notices[*switches[k].cue], loop->notice(k));
+  }
+  engine_.emplace(*schedule_, plays_, std::move(notices));
+  return Done{};
+}
+
+Result<DryRunReport> DryRun::run() {
+  if (Status<> connected = connect(); !connected) return connected.error();
+  go_at_ = show_starts_;
+  int at_once = 0;
+  while (clock_.now() < ends_at_) {
+    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
+      return Error{ErrorKind::interrupted, "interrupted"};
+    }
+    tick();
+    Instant next = next_instant();
+    // A driver that has more to read asks to be called again at once; time must go on all the same.
+    at_once = next <= clock_.now() ? at_once + 1 : 0;
+    if (at_once > kMostAtOnce) next = clock_.now() + microseconds(1);
+    next = std::min(std::max(next, clock_.now()), ends_at_);
+    keep_pace(next);
+    simulated_.advance_to(next);
+  }
+  compare(schedule_->switches().size() - 1);
+  return report();
+}
+
+void DryRun::tick() {
+  const Instant now = clock_.now();
+  engine_->step(now);
+  press_go();
+  if (now >= sample_at_) sample();
+  compare_when_due();
+  const BusTarget target = engine_->target();
+  for (std::size_t b = 0; b < loops_.size(); ++b) wishes_[b] = loops_[b]->step(now, target);
+  say_moment(target);
+}
+
+void DryRun::press_go() {
+  const Instant now = clock_.now();
+  if (engine_->finished()) {
+    if (ends_at_ == kNever) ends_at_ = now + kPostRoll;
+    return;
+  }
+  if (engine_->active()) {
+    go_at_ = kNever;
+    return;
+  }
+  if (go_at_ == kNever) go_at_ = now + controller::kShortestHold;
+  if (now < go_at_) return;
+  if (engine_->standby() == std::size_t{0}) {
+    sample_at_ = now + kSample / 2;
+    for (std::size_t b = 0; b < rig_.buses.size(); ++b) use_before_.push_back(simulated_.use(BusIndex::of(b)));
+  }
+  engine_->go(now);
+  go_at_ = kNever;
+}
+
+Instant DryRun::next_instant() const {
+  Instant next = std::min({simulated_.next_event(), engine_->next_event(), go_at_, sample_at_, compare_at_, ends_at_});
+  for (const Instant wish : wishes_) next = std::min(next, wish);
+  return next;
+}
+
+template <class Visit>
+void DryRun::for_markers(Visit visit) const {
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
+    const auto node = NodeIndex::of(n);
+    if (dead(node)) continue;
+    for (std::size_t c = 0; c < rig_.nodes[n].channels.size(); ++c) {
+      if (rig_.nodes[n].channels[c].kind != Channel::Kind::unused) visit(node, c);
+    }
+  }
+}
+
+void DryRun::sample() {
+  sample_at_ += kSample;
+  const std::size_t k = engine_->target().current;
+  for_markers([&](NodeIndex node, std::size_t channel) {
+    const LookIndex shown = simulated_.shown(node, static_cast<int>(channel));
+    const LookIndex planned = should(k, node, channel);
+    ++samples_;
+    if (shown == planned) {
+      ++right_;
+    } else if (shown != kNoGuidance && (k == 0 || shown != should(k - 1, node, channel))) {
+      ++wrong_;
+    }
+  });
+  if (options_.progress) {
+    const double all = std::max(1e-9, to_seconds(plays_.back().to - plays_.front().from));
+    options_.progress(to_seconds(engine_->position() - plays_.front().from) / all);
+  }
+}
+
+void DryRun::compare_when_due() {
+  const BusTarget target = engine_->target();
+  compare_at_ = kNever;
+  if (target.next_at == kNever || target.next == target.current || compared_ == target.current) return;
+  const Instant due = target.next_at - latch_ahead_ - kCompareAhead;
+  if (clock_.now() < due) {
+    compare_at_ = due;
+    return;
+  }
+  compare(target.current);
+}
+
+void DryRun::compare(std::size_t k) {
+  compared_ = k;
+  const auto& switches = schedule_->switches();
+  // The opening is nobody's cue: its lamps count like those of any switch.
+  const bool ends_cue = k + 1 == switches.size() || (switches[k].cue && switches[k + 1].cue != switches[k].cue);
+  CueReport cue;
+  for_markers([&](NodeIndex node, std::size_t channel) {
+    const LookIndex shown = simulated_.shown(node, static_cast<int>(channel));
+    const LookIndex planned = should(k, node, channel);
+    if (shown == planned) return;
+    if (exempt(node)) {
+      ++cue.exempt;
+      return;
+    }
+    ++cue.wrong;
+    if (cue.first.size() < kShownWrong) {
+      cue.first.push_back({rig_.nodes[node.at()].name, static_cast<int>(channel), shown, planned});
+    }
+  });
+  if (!ends_cue) {
+    report_.late += cue.wrong;
+    return;
+  }
+  if (switches[k].cue) {
+    const CuePlay& play = plays_[*switches[k].cue];
+    cue.number = play.cue.number.to_text();
+    cue.name = play.cue.name;
+    cue.end_s = to_seconds(play.to);
+  }
+  report_.wrong_final += cue.wrong;
+  report_.cues.push_back(std::move(cue));
+}
+
+bool DryRun::exempt(NodeIndex node) const {
+  const BusLoop& loop = *loops_[rig_.nodes[node.at()].bus.at()];
+  return std::ranges::any_of(simulated_.reboots(), [&](const sim::Reboot& reboot) {
+    return reboot.node == node && reboot.at <= clock_.now() &&
+           clock_.now() <= reboot.at + loop.suspect_time() + kHeartbeat;
+  });
+}
+
+bool DryRun::dead(NodeIndex node) const { return std::ranges::binary_search(simulated_.dead(), node); }
+
+void DryRun::say_moment(const BusTarget& target) {
+  if (!options_.moment || told_ == target.current) return;
+  told_ = target.current;
+  const controller::Switch& now = schedule_->switches()[target.current];
+  const double count = show_.tempo.count_at(now.time);
+  const std::string cue = now.cue ? plays_[*now.cue].cue.number.to_text() : "-";
+  options_.moment(fmt::format("{:10.3f} s  cue {:<6} {:>8}  {}", to_seconds(now.time), cue,
+                              show_.tempo.measure_beat(count), now.cause));
+}
+
+void DryRun::keep_pace(Instant next) const {
+  if (options_.pace == nullptr) return;
+  while (options_.pace->now() < next) {
+    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return;
+    std::this_thread::sleep_for(std::min(kPaceStep, next - options_.pace->now()));
+  }
+}
+
+DryRunReport DryRun::report() {
+  report_.switches = schedule_->switches().size();
+  report_.looks = schedule_->looks().size();
+  for_markers([&](NodeIndex, std::size_t) { ++report_.markers; });
+  report_.right_share = samples_ == 0 ? 1 : static_cast<double>(right_) / static_cast<double>(samples_);
+  report_.wrong_s = static_cast<double>(wrong_) * to_seconds(kSample);
+  report_.duration_s = to_seconds(plays_.back().to - plays_.front().from);
+  report_.run_s = to_seconds(clock_.now() - show_starts_);
+  report_.confusion_before = schedule_->confusion().before;
+  report_.confusion_after = schedule_->confusion().after;
+  report_.reboots = simulated_.reboots().size();
+  for (const NodeIndex node : simulated_.dead()) report_.dead.push_back(rig_.nodes[node.at()].name);
+  for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
+    const sim::BusUse use = simulated_.use(BusIndex::of(b));
+    const controller::BusCounters& counters = loops_[b]->counters();
+    BusReport bus;
+    bus.name = rig_.buses[b].name;
+    bus.kind = std::string(to_text(rig_.buses[b].kind));
+    bus.utilisation = to_seconds(use.busy - use_before_.at(b).busy) / std::max(1e-9, report_.run_s);
+    bus.nodes = static_cast<std::uint64_t>(
+        std::ranges::count_if(rig_.nodes, [&](const Node& node) { return node.bus == BusIndex::of(b); }));
+    bus.frames = use.frames;
+    bus.deliveries = counters.deliveries;
+    bus.retries = counters.retries;
+    bus.misses = counters.misses;
+    bus.quarantines = counters.quarantines;
+    bus.boots = counters.boots;
+    bus.late_latches = counters.late_latches;
+    bus.worst_lateness_ms = to_seconds(counters.worst_lateness) * 1e3;
+    report_.deliveries += counters.deliveries;
+    report_.retries += counters.retries;
+    report_.buses.push_back(std::move(bus));
+  }
+  return report_;
+}
+
+}  // namespace
+
+Result<DryRunReport> dry_run(const Show& show, const Plan& plan, Rig rig, const DryRunOptions& options) {
+  if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
+  for (Bus& bus : rig.buses) {
+    if (bus.simulated()) continue;
+    bus.url = bus.kind == BusKind::serial       ? "sim://serial"
+              : bus.kind == BusKind::can        ? "sim://can"
+              : bus.kind == BusKind::modbus_tcp ? "sim://tcp"
+                                                : "sim://rtu";
+  }
+  auto plays = controller::cue_plays(show, plan);
+  if (!plays) return plays.error();
+  return DryRun(show, plan, std::move(rig), std::move(plays).value(), options).run();
+}
+
+}  // namespace footlight::app

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "controller/bus_loop.hpp"
+
+#include <algorithm>
+
+#include "core/check.hpp"
+
+namespace footlight::controller {
+namespace {
+
+constexpr Duration kSuspect = milliseconds(1000);  // T1 of the trust model
+constexpr double kPollShare = 0.2;                 // of the bus, for the promise of T1
+constexpr Duration kFirstBackoff = milliseconds(50);
+constexpr Duration kLongestBackoff = milliseconds(1000);
+constexpr std::uint8_t kMissesToQuarantine = 3;
+constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
+constexpr std::uint8_t kUploads = 2;       // uploads have no receipt
+constexpr int kMostOperations = 64;        // a step ends, whatever a driver says
+constexpr Duration kRetryDown = milliseconds(100);
+constexpr Duration kRetryBusy = milliseconds(1);
+constexpr std::uint8_t kStateShowing = 1;
+constexpr std::uint8_t kStateHold = 2;
+
+}  // namespace
+
+BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver)
+    : schedule_(schedule), driver_(driver), can_(driver.capabilities()) {
+  std::size_t most = 0;
+  for (const drivers::NodeAddress& address : nodes) most = std::max(most, address.node.at() + 1);
+  by_node_.assign(most, -1);
+  for (const drivers::NodeAddress& address : nodes) {
+    by_node_[address.node.at()] = static_cast<std::int32_t>(nodes_.size());
+    NodeState& node = nodes_.emplace_back();
+    node.address = address;
+  }
+  for (std::size_t i = 1; i < schedule.looks().size(); ++i) {
+    uploads_[i] = kUploads;
+    urgent_[i] = true;
+  }
+}
+
+Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
+  now_ = now;
+  show_time_ = target.show_time;
+  refused_ = false;
+  follow(target);
+  Instant driver_wish = driver_.step(now, *this);
+  for (int i = 0; i < kMostOperations && now >= down_until_; ++i) {
+    note_end();
+    if (!driver_.ready() || !act()) break;
+    follow(target);
+    driver_wish = driver_.step(now, *this);
+  }
+  return wish(driver_wish);
+}
+
+void BusLoop::note_end() noexcept {
+  if (under_way_ == Operation::none || !driver_.ready()) return;
+  // A driver with a queue is ready before its frames are on the wire: there the estimate stands.
+  if (!can_.pushes_status) {
+    const Duration most = 4 * driver_.preload_time(kChannelsPerNode) + milliseconds(100);
+    Duration& longest = longest_[static_cast<std::size_t>(under_way_)];
+    longest = std::clamp(now_ - since_, longest, std::max(longest, most));
+    line_free_ = now_;
+  }
+  under_way_ = Operation::none;
+}
+
+Instant BusLoop::wish(Instant driver_wish) const noexcept {
+  Instant earliest = driver_wish;
+  const auto consider = [&](Instant instant) {
+    if (instant > now_) earliest = std::min(earliest, instant);
+  };
+  consider(latch_at());
+  if (next_ != current_) consider(next_at_);
+  consider(preload_from());
+  consider(heartbeat_at_);
+  consider(refresh_at_);
+  consider(table_refresh_at_);
+  consider(down_until_);
+  for (const NodeState& node : nodes_) {
+    if (node.quarantined && !can_.pushes_status) consider(node.ask_at);
+  }
+  if (refused_) consider(now_ + kRetryBusy);
+  return earliest;
+}
+
+// ---- where the show stands
+
+void BusLoop::follow(const BusTarget& target) noexcept {
+  if (!placed_) {
+    placed_ = true;
+    seek(target.current);
+    for (NodeState& node : nodes_) node.counted = target.current != 0;
+  }
+  if (target.current == current_) {
+    aim(target.next, target.next_at);
+  } else if (target.current == next_) {
+    // Due already and not latched yet: `latch_next` does so as soon as the wire is free.
+    next_at_ = std::min(next_at_, now_);
+  } else if (target.current != previous_ || target.next != current_) {
+    seek(target.current);  // else: latched ahead by its own time on the wire
+    aim(target.next, target.next_at);
+  }
+}
+
+void BusLoop::aim(std::size_t next, Instant at) noexcept {
+  if (next == next_ && at == next_at_) return;
+  if (next != next_) {
+    for (NodeState& node : nodes_) {
+      node.changes = next != current_ && !std::ranges::equal(looks(current_, node), looks(next, node));
+    }
+  }
+  next_ = next;
+  next_at_ = at;
+  passes_ = 1;
+  if (can_.sequenced_latch || at == kNever) return;
+  passes_ = 2;
+  if (at - now_ < 4 * preloads_left()) passes_ = 1;
+}
+
+void BusLoop::seek(std::size_t k) noexcept {
+  previous_ = kNone;
+  current_ = k;
+  next_ = k;
+  next_at_ = kNever;
+  unlatched_ = false;
+  repeats_ = 0;
+  for (NodeState& node : nodes_) {
+    node.crc = drivers::looks_crc(looks(k, node));
+    node.right = false;
+    // Whoever shows it already stays as it is; without a sequence something unknown may be pending, which a question
+    // by SYNC would light: there the preload comes first.
+    node.verify = can_.readback && can_.sequenced_latch;
+    node.changes = false;
+    node.counted = true;
+    node.pending = kNone;
+    node.offered = kNone;
+    node.offers = 0;
+  }
+}
+
+void BusLoop::switch_over(bool latched) noexcept {
+  previous_ = current_;
+  current_ = next_;
+  next_at_ = kNever;
+  unlatched_ = false;
+  repeats_ = latched && can_.sequenced_latch ? 1 : 0;
+  for (NodeState& node : nodes_) {
+    const bool offered = node.offered == current_;
+    const bool receipted = node.pending == current_;
+    if (node.changes) {
+      node.crc = drivers::looks_crc(looks(current_, node));
+      node.right = false;
+      node.counted = false;
+    }
+    node.changes = false;
+    node.pending = kNone;
+    if (node.quarantined) {
+      node.verify = false;
+    } else if (!can_.readback) {
+      if (latched && receipted) on_confirmed(node);
+    } else if (latched && can_.pushes_status) {
+      node.verify = true;
+    } else {
+      node.verify = latched && offered && !node.right;
+    }
+  }
+}
+
+// ---- what the wire tells
+
+BusLoop::NodeState* BusLoop::find(NodeIndex node) noexcept {
+  const std::int32_t position = node.at() < by_node_.size() ? by_node_[node.at()] : -1;
+  return position < 0 ? nullptr : &nodes_[static_cast<std::size_t>(position)];
+}
+
+void BusLoop::on_event(const drivers::DeviceEvent& event) {
+  using Kind = drivers::DeviceEvent::Kind;
+  if (event.kind == Kind::bus_down || event.kind == Kind::bus_up) {
+    down_until_ = event.kind == Kind::bus_down ? now_ + kRetryDown : now_;
+    for (NodeState& node : nodes_) {
+      node.right = false;
+      node.in_flight = false;
+      node.pending = kNone;
+      node.verify = can_.readback && can_.sequenced_latch;
+    }
+    return;
+  }
+  NodeState* node = find(event.node);
+  if (node == nullptr) return;
+  switch (event.kind) {
+    case Kind::preloaded:
+      node->in_flight = false;
+      if (node->offered != kNone && event.sequence == sequence_of(node->offered)) node->pending = node->offered;
+      if (!can_.pushes_status) {
+        node->misses = 0;
+        if (!can_.readback) node->quarantined = false;
+      }
+      break;
+    case Kind::showing:
+      on_showing(*node, event);
+      break;
+    case Kind::booted:
+      on_boot(*node);
+      break;
+    case Kind::missed:
+    case Kind::rejected:
+      on_miss(*node);
+      break;
+    case Kind::bus_down:
+    case Kind::bus_up:
+      break;
+  }
+}
+
+void BusLoop::on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept {
+  node.misses = 0;
+  node.quarantined = false;
+  const bool fresh = event.sequence == sequence_of(current_);
+  const bool guides = event.state == kStateShowing || event.state == kStateHold;
+  if (guides && event.crc == node.crc && (node.right || fresh)) {
+    node.verify = false;
+    on_confirmed(node);
+    return;
+  }
+  if (can_.pushes_status && !fresh) return;  // an answer to the latch before
+  node.right = false;
+  node.verify = false;
+  if (node.offered == current_ && node.offers >= kOffersToMiss) on_miss(node);
+}
+
+void BusLoop::on_confirmed(NodeState& node) noexcept {
+  node.right = true;
+  if (node.counted) return;
+  node.counted = true;
+  (can_.readback ? counters_.deliveries : counters_.unverified) += changed_channels(node);
+}
+
+void BusLoop::on_miss(NodeState& node) noexcept {
+  ++counters_.misses;
+  node.in_flight = false;
+  if (can_.pushes_status) {
+    node.right = false;
+    node.verify = false;
+  } else if (node.offered != next_ || node.pending == next_) {
+    node.verify = can_.readback;  // a question was missed: ask again at once
+  }
+  if (node.quarantined) {
+    node.backoff = std::min(2 * node.backoff, kLongestBackoff);
+    node.ask_at = now_ + node.backoff;
+    node.verify = false;
+    return;
+  }
+  if (++node.misses < kMissesToQuarantine) return;
+  ++counters_.quarantines;
+  node.quarantined = true;
+  node.right = false;
+  node.verify = false;
+  node.pending = kNone;
+  node.offered = kNone;
+  node.backoff = kFirstBackoff;
+  node.ask_at = now_ + node.backoff;
+}
+
+void BusLoop::on_boot(NodeState& node) noexcept {
+  ++counters_.boots;
+  node.misses = 0;
+  node.quarantined = false;
+  node.right = false;
+  node.verify = false;
+  node.in_flight = false;
+  node.pending = kNone;
+  node.offered = kNone;
+  // It has lost its look table, too: first what it must show, the rest in idle time.
+  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) uploads_[i] = kUploads;
+  need_looks(current_, node);
+  need_looks(next_, node);
+}
+
+void BusLoop::need_looks(std::size_t k, const NodeState& node) noexcept {
+  for (const LookIndex look : looks(k, node)) urgent_[look] = look != kDark;
+}
+
+// ---- what others may know
+
+bool BusLoop::settled() const noexcept {
+  if (!started_) return false;
+  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) {
+    if (urgent_[i] && uploads_[i] > 0) return false;
+  }
+  return std::ranges::all_of(nodes_, [](const NodeState& node) { return node.right || node.quarantined; });
+}
+
+std::vector<NodeIndex> BusLoop::quarantined() const {
+  std::vector<NodeIndex> list;
+  for (const NodeState& node : nodes_) {
+    if (node.quarantined) list.push_back(node.address.node);
+  }
+  return list;
+}
+
+Duration BusLoop::notice(std::size_t k) const {
+  if (can_.sequenced_latch || k == 0) return {};
+  Duration sum{};
+  for (const NodeState& node : nodes_) {
+    if (!std::ranges::equal(looks(k - 1, node), looks(k, node))) sum += driver_.preload_time(node.address.channels);
+  }
+  return 3 * sum + 2 * driver_.latch_time() + milliseconds(20);
+}
+
+Duration BusLoop::suspect_time() const {
+  const Duration round = static_cast<Duration::rep>(nodes_.size()) * driver_.status_time();
+  return std::max(kSuspect,
+                  can_.pushes_status
+                      ? kSuspect
+                      : Duration(static_cast<Duration::rep>(static_cast<double>(round.count()) / kPollShare)));
+}
+
+std::span<const LookIndex> BusLoop::looks(std::size_t k, const NodeState& node) const noexcept {
+  return schedule_.looks_of(k, node.address.node).first(node.address.channels);
+}
+
+std::uint64_t BusLoop::changed_channels(const NodeState& node) const noexcept {
+  const auto now = looks(current_, node);
+  std::uint64_t changed = 0;
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    changed += now[c] != (current_ == 0 ? kDark : looks(current_ - 1, node)[c]) ? 1 : 0;
+  }
+  return changed;
+}
+
+}  // namespace footlight::controller

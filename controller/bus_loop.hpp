@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "controller/cue_schedule.hpp"
+#include "core/time.hpp"
+#include "drivers/driver.hpp"
+
+namespace footlight::controller {
+
+/// Where the show stands, as the cue engine says it.
+struct BusTarget {
+  std::size_t current = 0;   ///< switch whose lamps should be lit now
+  std::size_t next = 0;      ///< the one that comes after it; `current` when there is none
+  Instant next_at = kNever;  ///< clock time of `next`; kNever while the show waits for GO
+  Duration show_time{};      ///< for heartbeats
+
+  friend bool operator==(const BusTarget&, const BusTarget&) = default;
+};
+
+/// What a bus has done since the start.
+struct BusCounters {
+  std::uint64_t deliveries = 0;  ///< markers whose look had to change and was confirmed by sequence and CRC
+  std::uint64_t unverified = 0;  ///< the same on devices that cannot be read back: sent and receipted
+  std::uint64_t retries = 0;     ///< preloads and questions sent again
+  std::uint64_t misses = 0;      ///< no answer, a wrong one or a refusal
+  std::uint64_t quarantines = 0;
+  std::uint64_t boots = 0;         ///< restarts of nodes that were noticed
+  std::uint64_t latches = 0;       ///< moments carried
+  std::uint64_t late_latches = 0;  ///< of them, more than 1 ms late
+  Duration worst_lateness{};       ///< of a latch's last bit
+};
+
+/// One bus: brings what its nodes show to what the schedule says, level-triggered. For each node there is a desired
+/// state and a last confirmed one; the difference is sent again and again until it is confirmed, so a lost frame, a
+/// rebooted node, a seek and a restarted controller are one case.
+///
+/// Each switch: preload the next looks, latch so that its last bit is on the wire at the switch's instant, ask who had
+/// to change, repair by preload and a repeated latch, refresh round robin in idle time. Where the latch carries no
+/// sequence (CANopen), nothing of the next switch is preloaded before the verification of this one has had its time,
+/// and from the first such preload no latch is sent but the switch's own.
+///
+/// Pure stepping on one thread; `step` neither allocates, locks nor throws. Borrows schedule and driver.
+class BusLoop final : private drivers::EventSink {
+ public:
+  BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver);
+
+  /// Does what is due. @return when to call again, if nothing arrives before
+  Instant step(Instant now, const BusTarget& target) noexcept;
+
+  /// True when every node that is not in quarantine is confirmed to show what it should, and look table and roll call
+  /// are done.
+  [[nodiscard]] bool settled() const noexcept;
+  [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }
+  /// Switch that has been latched last.
+  [[nodiscard]] std::size_t lit() const noexcept { return current_; }
+  /// Nodes that have not answered for so long that they are only asked from time to time.
+  [[nodiscard]] std::vector<NodeIndex> quarantined() const;
+  /// How long before a switch of unknown instant (a GO) this bus has to know it: 0 where looks wait preloaded.
+  [[nodiscard]] Duration notice(std::size_t k) const;
+  /// Time in which a silent node is noticed: 1 s, or a round of questions that takes a fifth of the bus.
+  [[nodiscard]] Duration suspect_time() const;
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  enum class Operation : std::uint8_t { none, latch, heartbeat, upload, ask, preload };
+
+  struct NodeState {
+    drivers::NodeAddress address;
+    std::uint16_t crc = 0;  ///< of the looks of `current_`
+    bool right = false;     ///< confirmed to show the looks of `current_`
+    bool verify = false;    ///< a latch may have changed it: its status is awaited or to be asked
+    bool changes = false;   ///< looks of `next_` differ from those of `current_`
+    bool counted = false;   ///< its delivery of `current_` is counted
+    bool quarantined = false;
+    std::uint8_t misses = 0;      ///< in a row
+    std::uint8_t offers = 0;      ///< preloads of `offered` sent
+    std::size_t offered = kNone;  ///< switch preloaded last
+    bool in_flight = false;       ///< a preload is under way
+    std::size_t pending = kNone;  ///< switch whose preload is receipted and not yet latched
+    Instant ask_at;               ///< in quarantine
+    Duration backoff{};           ///< in quarantine
+  };
+
+  void on_event(const drivers::DeviceEvent& event) override;
+  void on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept;
+  void on_miss(NodeState& node) noexcept;
+  void on_boot(NodeState& node) noexcept;
+  void on_confirmed(NodeState& node) noexcept;
+  [[nodiscard]] NodeState* find(NodeIndex node) noexcept;
+
+  void follow(const BusTarget& target) noexcept;
+  void aim(std::size_t next, Instant at) noexcept;
+  void seek(std::size_t k) noexcept;
+  void switch_over(bool latched) noexcept;
+
+  // One operation, or false when there is nothing to do now. In this order of importance.
+  bool act() noexcept;
+  bool latch_next() noexcept;
+  bool repeat_latch() noexcept;
+  bool send_heartbeat() noexcept;
+  bool upload(bool urgent_only) noexcept;
+  bool verify() noexcept;
+  bool repair() noexcept;
+  bool preload_next() noexcept;
+  bool ask_quarantined() noexcept;
+  bool refresh() noexcept;
+
+  bool send_preload(NodeState& node, std::size_t k) noexcept;
+  bool send_latch(std::size_t k) noexcept;
+  bool send_ask(NodeState& node) noexcept;
+  bool took(drivers::SendStatus status, Operation operation, Duration time) noexcept;
+
+  [[nodiscard]] bool wants_preload(const NodeState& node) const noexcept;
+  [[nodiscard]] Instant latch_at() const noexcept;
+  /// From here on the next switch's preloads come first.
+  [[nodiscard]] Instant preload_from() const noexcept;
+  [[nodiscard]] Duration preloads_left() const noexcept;
+  [[nodiscard]] Duration time_of(Operation operation) const noexcept;
+  [[nodiscard]] bool fits(Duration time) const noexcept { return fits_before(time, latch_at()); }
+  [[nodiscard]] bool may_latch_current() const noexcept { return can_.sequenced_latch || !unlatched_; }
+  [[nodiscard]] bool in_hurry() const noexcept;
+  [[nodiscard]] bool fits_before(Duration time, Instant deadline) const noexcept;
+  /// True while nodes that answer a latch by themselves still may.
+  [[nodiscard]] bool awaits_status() const noexcept;
+  [[nodiscard]] std::uint64_t changed_channels(const NodeState& node) const noexcept;
+  [[nodiscard]] Instant wish(Instant driver_wish) const noexcept;
+  [[nodiscard]] std::span<const LookIndex> looks(std::size_t k, const NodeState& node) const noexcept;
+  void need_looks(std::size_t k, const NodeState& node) noexcept;
+  void note_end() noexcept;
+  bool latch_current() noexcept;
+
+  const CueSchedule& schedule_;
+  drivers::Driver& driver_;
+  drivers::Capabilities can_;
+  std::vector<NodeState> nodes_;
+  std::vector<std::int32_t> by_node_;  ///< position in nodes_ of a NodeIndex, -1: of another bus
+  BusCounters counters_;
+
+  Instant now_;
+  Duration show_time_{};
+  std::size_t previous_ = kNone;  ///< switch before `current_`
+  std::size_t current_ = 0;
+  std::size_t next_ = 0;
+  Instant next_at_ = kNever;
+  bool started_ = false;
+  bool refused_ = false;      ///< the driver was ready and took nothing: try again soon
+  std::uint8_t passes_ = 1;   ///< preloads of `next_` for each node, where none is receipted
+  bool placed_ = false;       ///< the first target has been seen
+  bool unlatched_ = false;    ///< a preload of `next_` has been sent since the last latch
+  std::uint8_t repeats_ = 0;  ///< latches of `current_` to send again at once
+  Instant heartbeat_at_;
+  Instant refresh_at_;
+  Instant table_refresh_at_;
+  Instant down_until_;
+  std::size_t refresh_cursor_ = 0;
+  std::size_t table_cursor_ = 1;
+  std::array<std::uint8_t, 256> uploads_{};  ///< times that a look is still to be sent
+  std::array<bool, 256> urgent_{};           ///< needed before a node can be lit
+
+  // The operation under way, to learn how long one takes when an answer is late.
+  Operation under_way_ = Operation::none;
+  Instant since_;
+  Instant line_free_;  ///< estimate, for wires with a queue
+  std::array<Duration, 6> longest_{};
+};
+
+}  // namespace footlight::controller

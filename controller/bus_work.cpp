@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a bus loop puts on the wire, and in which order. Where it stands and what it knows: bus_loop.cpp.
+#include <algorithm>
+
+#include "controller/bus_loop.hpp"
+
+namespace footlight::controller {
+namespace {
+
+constexpr Duration kHeartbeat = milliseconds(250);
+constexpr Duration kRefreshRound = milliseconds(800);  // every node is asked this often, the wire allowing
+constexpr Duration kSyncPoll = milliseconds(500);
+constexpr Duration kResendRound = milliseconds(2000);  // devices that cannot be read back
+constexpr Duration kTableRefresh = milliseconds(500);  // one look each
+constexpr Duration kLateness = milliseconds(1);
+constexpr Duration kRetryDown = milliseconds(100);
+constexpr Duration kAnswerWindow =
+    milliseconds(15);             // turnaround and margin of nodes that answer a latch by themselves
+constexpr double kRepeats = 1.4;  // room for lost preloads: 1 / (1 - 30 %)
+
+}  // namespace
+
+bool BusLoop::act() noexcept {
+  if (next_ != current_ && now_ >= latch_at()) return latch_next();
+  if (repeat_latch() || send_heartbeat()) return true;
+  if (!started_) {
+    started_ = took(driver_.start(now_), Operation::heartbeat, driver_.latch_time());
+    return started_;
+  }
+  if (in_hurry() && preload_next()) return true;
+  return upload(true) || verify() || repair() || (can_.sequenced_latch && preload_next()) || ask_quarantined() ||
+         refresh() || upload(false);
+}
+
+bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration time) noexcept {
+  if (status == drivers::SendStatus::accepted) {
+    under_way_ = operation;
+    since_ = now_;
+    line_free_ = std::max(line_free_, now_) + time;
+    return true;
+  }
+  if (status == drivers::SendStatus::down) {
+    down_until_ = now_ + kRetryDown;
+  } else {
+    refused_ = true;
+  }
+  return false;
+}
+
+// ---- the moment
+
+Instant BusLoop::latch_at() const noexcept {
+  return next_ == current_ || next_at_ == kNever ? kNever : next_at_ - driver_.latch_time();
+}
+
+bool BusLoop::latch_next() noexcept {
+  const bool needed = std::ranges::any_of(
+      nodes_, [&](const NodeState& node) { return node.changes || node.offered == next_ || node.pending == next_; });
+  if (!needed) {
+    if (now_ < next_at_) return false;
+    switch_over(false);
+    return true;
+  }
+  const Instant end = std::max(line_free_, now_) + driver_.latch_time();
+  if (!took(driver_.latch(sequence_of(next_), now_), Operation::latch, driver_.latch_time())) return false;
+  const Duration late = std::max(Duration{}, end - next_at_);
+  ++counters_.latches;
+  counters_.late_latches += late > kLateness ? 1 : 0;
+  counters_.worst_lateness = std::max(counters_.worst_lateness, late);
+  switch_over(true);
+  return true;
+}
+
+bool BusLoop::latch_current() noexcept {
+  return took(driver_.latch(sequence_of(current_), now_), Operation::latch, driver_.latch_time());
+}
+
+bool BusLoop::repeat_latch() noexcept {
+  if (repeats_ == 0 || !fits(time_of(Operation::latch))) return false;
+  if (!latch_current()) return false;
+  --repeats_;
+  return true;
+}
+
+// ---- standing duties
+
+bool BusLoop::send_heartbeat() noexcept {
+  if (now_ < heartbeat_at_ || !fits(time_of(Operation::heartbeat))) return false;
+  if (!took(driver_.heartbeat(show_time_, now_), Operation::heartbeat, driver_.latch_time())) return false;
+  heartbeat_at_ = now_ + kHeartbeat;
+  return true;
+}
+
+bool BusLoop::upload(bool urgent_only) noexcept {
+  if (!fits(time_of(Operation::upload)) || (in_hurry() && !fits_before(time_of(Operation::upload), preload_from()))) {
+    return false;
+  }
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) {
+    if ((!urgent_only || urgent_[i]) && uploads_[i] > (most == 0 ? 0 : uploads_[most])) most = i;
+  }
+  if (most == 0) return false;
+  const auto index = static_cast<LookIndex>(most);
+  if (!took(driver_.upload_look(index, schedule_.looks()[most], now_), Operation::upload,
+            driver_.preload_time(kChannelsPerNode / 2))) {
+    return false;
+  }
+  if (--uploads_[most] == 0) urgent_[most] = false;
+  return true;
+}
+
+// ---- after the moment
+
+bool BusLoop::awaits_status() const noexcept {
+  return can_.pushes_status &&
+         std::ranges::any_of(nodes_, [](const NodeState& node) { return node.verify && !node.quarantined; });
+}
+
+bool BusLoop::verify() noexcept {
+  if (can_.pushes_status || !fits(time_of(Operation::ask))) return false;
+  NodeState* least = nullptr;
+  for (NodeState& node : nodes_) {
+    if (node.verify && !node.quarantined && (least == nullptr || node.misses < least->misses)) least = &node;
+  }
+  return least != nullptr && send_ask(*least);
+}
+
+bool BusLoop::repair() noexcept {
+  if (!may_latch_current() || awaits_status()) return false;
+  const Instant deadline = can_.sequenced_latch ? latch_at() : preload_from();
+  bool under_way = false;
+  bool ready = false;
+  for (NodeState& node : nodes_) {
+    if (node.right || node.verify || node.quarantined) continue;
+    under_way = under_way || node.in_flight;
+    ready = ready || node.pending == current_;
+    if (node.in_flight || node.pending == current_) continue;
+    // What the next switch has preloaded into this node is lost by a repair and has to find its time again.
+    const Duration again = node.pending == next_ && next_ != current_ ? time_of(Operation::preload) : Duration{};
+    if (!fits_before(time_of(Operation::preload) + time_of(Operation::latch) + again, deadline)) continue;
+    return send_preload(node, current_);
+  }
+  if (under_way || !ready || !fits_before(time_of(Operation::latch), deadline) || !latch_current()) return false;
+  for (NodeState& node : nodes_) {
+    const bool repaired = node.pending == current_ && !node.right;
+    if (repaired) node.pending = kNone;
+    if (repaired && !can_.readback) on_confirmed(node);
+    node.verify = can_.readback && !node.quarantined && (node.verify || repaired || can_.pushes_status);
+  }
+  repeats_ = can_.sequenced_latch ? 1 : 0;
+  return true;
+}
+
+// ---- before the next one
+
+bool BusLoop::wants_preload(const NodeState& node) const noexcept {
+  if (next_ == current_ || node.quarantined || node.in_flight || (node.right && !node.changes)) return false;
+  if (can_.sequenced_latch) return node.pending != next_;
+  return node.offered != next_ || node.offers < passes_;
+}
+
+Duration BusLoop::preloads_left() const noexcept {
+  Duration sum{};
+  for (const NodeState& node : nodes_) {
+    if (!wants_preload(node)) continue;
+    const int sent = node.offered == next_ ? node.offers : 0;
+    const int left = can_.sequenced_latch ? 1 : std::max(1, passes_ - sent);
+    sum += left * driver_.preload_time(node.address.channels);
+  }
+  return sum;
+}
+
+Instant BusLoop::preload_from() const noexcept {
+  const Instant latch = latch_at();
+  if (latch == kNever) return kNever;
+  const Duration left = preloads_left();
+  if (left.count() == 0) return latch;
+  const auto room = Duration(static_cast<Duration::rep>(static_cast<double>(left.count()) * kRepeats));
+  return latch - room - 2 * time_of(Operation::preload) - time_of(Operation::heartbeat);
+}
+
+bool BusLoop::in_hurry() const noexcept { return next_ != current_ && (unlatched_ || now_ >= preload_from()); }
+
+bool BusLoop::preload_next() noexcept {
+  if (!fits(time_of(Operation::preload))) return false;
+  NodeState* least = nullptr;
+  int fewest = 0;
+  for (NodeState& node : nodes_) {
+    if (!wants_preload(node)) continue;
+    const int sent = node.offered == next_ ? node.offers : 0;
+    if (least == nullptr || sent < fewest) {
+      least = &node;
+      fewest = sent;
+    }
+  }
+  return least != nullptr && send_preload(*least, next_);
+}
+
+bool BusLoop::send_preload(NodeState& node, std::size_t k) noexcept {
+  const drivers::SendStatus status = driver_.preload(node.address, sequence_of(k), looks(k, node), now_);
+  if (!took(status, Operation::preload, driver_.preload_time(node.address.channels))) return false;
+  const bool again = node.offered == k;
+  // Where nothing is receipted, a second pass before the moment is the rule and no retry.
+  if (again && (can_.sequenced_latch || k == current_)) ++counters_.retries;
+  node.offers = again ? static_cast<std::uint8_t>(std::min(node.offers + 1, 250)) : std::uint8_t{1};
+  node.offered = k;
+  node.pending = kNone;
+  node.in_flight = true;
+  if (k != current_ && !can_.sequenced_latch) unlatched_ = true;
+  return true;
+}
+
+bool BusLoop::send_ask(NodeState& node) noexcept {
+  if (!took(driver_.ask(node.address, now_), Operation::ask, driver_.status_time())) return false;
+  counters_.retries += node.misses > 0 ? 1 : 0;
+  return true;
+}
+
+// ---- idle time
+
+bool BusLoop::ask_quarantined() noexcept {
+  // Who answers a latch by itself needs no question.
+  if (can_.pushes_status || !fits(std::max(time_of(Operation::ask), time_of(Operation::preload)))) return false;
+  for (NodeState& node : nodes_) {
+    if (!node.quarantined || node.in_flight || now_ < node.ask_at) continue;
+    if (can_.readback) {
+      if (!send_ask(node)) return false;
+    } else if (!may_latch_current() || !send_preload(node, current_)) {
+      return false;
+    }
+    node.ask_at = now_ + node.backoff;
+    return true;
+  }
+  return false;
+}
+
+bool BusLoop::refresh() noexcept {
+  if (now_ >= table_refresh_at_ && schedule_.looks().size() > 1) {
+    table_refresh_at_ = now_ + kTableRefresh;
+    table_cursor_ = table_cursor_ + 1 < schedule_.looks().size() ? table_cursor_ + 1 : 1;
+    if (uploads_[table_cursor_] == 0) uploads_[table_cursor_] = 1;
+  }
+  if (now_ < refresh_at_ || nodes_.empty()) return false;
+  const auto count = static_cast<Duration::rep>(nodes_.size());
+  if (can_.pushes_status) {
+    const Duration answers = count * driver_.status_time() + kAnswerWindow;
+    if (awaits_status() || !may_latch_current() || !fits_before(driver_.latch_time() + answers, preload_from())) {
+      return false;
+    }
+    if (!latch_current()) return false;
+    refresh_at_ = now_ + kSyncPoll;
+    for (NodeState& node : nodes_) node.verify = !node.quarantined;
+    return true;
+  }
+  refresh_cursor_ = (refresh_cursor_ + 1) % nodes_.size();
+  NodeState& node = nodes_[refresh_cursor_];
+  if (can_.readback) {
+    if (!fits(time_of(Operation::ask))) return false;
+    refresh_at_ = now_ + std::max(kRefreshRound / count, 2 * driver_.status_time());
+    return !node.quarantined && !node.verify && send_ask(node);
+  }
+  // Sent again like a repair: what cannot be read back may have been switched off and on.
+  refresh_at_ = now_ + std::max(kResendRound / count, 2 * driver_.preload_time(kChannelsPerNode));
+  if (may_latch_current()) node.right = false;
+  return may_latch_current();
+}
+
+Duration BusLoop::time_of(Operation operation) const noexcept {
+  Duration budget = driver_.latch_time();
+  if (operation == Operation::ask) budget = driver_.status_time();
+  if (operation == Operation::preload) budget = driver_.preload_time(kChannelsPerNode);
+  if (operation == Operation::upload) budget = driver_.preload_time(kChannelsPerNode / 2);
+  return std::max(budget, longest_[static_cast<std::size_t>(operation)]);
+}
+
+bool BusLoop::fits_before(Duration time, Instant deadline) const noexcept {
+  return deadline == kNever || std::max(line_free_, now_) + time <= deadline;
+}
+
+}  // namespace footlight::controller

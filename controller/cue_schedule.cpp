@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "controller/cue_schedule.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <map>
+
+#include "controller/bus_budget.hpp"
+#include "controller/crowd.hpp"
+#include "controller/cue_list.hpp"
+#include "controller/lamp.hpp"
+#include "controller/patterns.hpp"
+#include "core/check.hpp"
+
+namespace footlight::controller {
+
+namespace {
+constexpr std::size_t kMostLooks = 254;
+constexpr double kNearPitches = 1.5;
+
+struct LampAt {
+  CellIndex cell;
+  std::size_t slot = 0;  ///< node x 32 + channel
+};
+struct WornBy {
+  PerformerIndex performer;
+  std::size_t slot = 0;
+};
+
+/// All possible looks by (colour, role, pattern). Numbers are given to those that are used.
+class LookBook {
+ public:
+  LookBook(const Show& show, std::size_t performers) {
+    std::map<Colour, std::uint32_t> numbers;
+    for (std::size_t p = 0; p < performers; ++p) {
+      const auto& group = p < show.performers.size() ? show.performers[p].group : std::nullopt;
+      const Colour colour = group ? show.groups.at(group->at()).colour : show.default_colour;
+      colour_of_.push_back(numbers.try_emplace(colour, static_cast<std::uint32_t>(numbers.size())).first->second);
+    }
+    std::vector<Colour> colours(numbers.size());
+    for (const auto& [colour, number] : numbers) colours[number] = colour;
+    for (const Colour colour : colours) {
+      for (int r = 0; r < kLampRoles; ++r) {
+        const auto found = show.looks.find(static_cast<LampRole>(r));
+        const LookChoice choice = found != show.looks.end() ? found->second : default_choice(static_cast<LampRole>(r));
+        const Look look{choice.colour.value_or(colour), choice.effect, choice.brightness};
+        for (int pattern = 0; pattern < kPatterns; ++pattern) looks_.push_back(with_pattern(look, pattern));
+      }
+    }
+  }
+
+  /// Place of a lamp's look in the book.
+  [[nodiscard]] std::uint16_t entry(const Lamp& lamp, int pattern) const {
+    const auto role = static_cast<std::size_t>(*lamp.role);
+    return static_cast<std::uint16_t>((colour_of_[lamp.whose.at()] * kLampRoles + role) * kPatterns +
+                                      static_cast<std::size_t>(pattern));
+  }
+  [[nodiscard]] const Look& look(std::uint16_t entry) const { return looks_[entry]; }
+  [[nodiscard]] std::size_t size() const { return looks_.size(); }
+  /// Most looks that a show can need with so many patterns.
+  [[nodiscard]] std::size_t different(int patterns) const {
+    std::vector<Look> list;
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+      if (static_cast<int>(i % kPatterns) < patterns) list.push_back(looks_[i]);
+    }
+    std::sort(list.begin(), list.end());
+    return static_cast<std::size_t>(std::unique(list.begin(), list.end()) - list.begin());
+  }
+
+ private:
+  std::vector<std::uint32_t> colour_of_;
+  std::vector<Look> looks_;
+};
+
+constexpr std::uint16_t kDarkEntry = std::numeric_limits<std::uint16_t>::max();
+
+/// Follows the crowd twice: first to see whose goals are near each other, then to light the lamps.
+class Compiler {
+ public:
+  Compiler(const Show& show, const Plan& plan, const Rig& rig, const std::vector<CuePlay>& plays)
+      : plan_(plan), crowd_(show, plan, plays), book_(show, plan.tracks.size()), nodes_(rig.nodes.size()) {
+    lit_.resize(static_cast<std::size_t>(plan.stage.grid.size()));
+    for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+      for (std::size_t c = 0; c < rig.nodes[n].channels.size(); ++c) {
+        const Channel& channel = rig.nodes[n].channels[c];
+        const std::size_t slot = n * kChannelsPerNode + c;
+        if (channel.kind == Channel::Kind::cell) {
+          lamps_.push_back({channel.cell, slot});
+          lit_[channel.cell.at()] = true;
+        } else if (channel.kind == Channel::Kind::wearable) {
+          worn_.push_back({channel.performer, slot});
+        }
+      }
+    }
+    for (std::size_t c = 0; c < lit_.size(); ++c) near_.push_back(near(CellIndex::of(c)));
+  }
+
+  Result<CueSchedule> compile() {
+    int patterns = kPatterns;
+    while (patterns > 1 && book_.different(patterns) + 1 > kMostLooks) patterns /= 2;
+    if (book_.different(patterns) + 1 > kMostLooks) {
+      return input_error("the groups' colours need " + std::to_string(book_.different(patterns) + 1) +
+                         " looks and a marker's look table holds 254 (give groups that never stand side by side the "
+                         "same colour, or give looks a colour of their own)");
+    }
+    NearGoals near(plan_.tracks.size());
+    for (std::size_t k = 0; k < crowd_.moments().size(); ++k) {
+      light(k);
+      for_near_goals([&](const Lamp& a, const Lamp& b) {
+        if (a.whose < b.whose && book_.look(book_.entry(a, 0)) == book_.look(book_.entry(b, 0)))
+          near.add(a.whose, b.whose);
+      });
+    }
+    pattern_ = near.patterns(patterns);
+    return write();
+  }
+
+ private:
+  [[nodiscard]] std::vector<CellIndex> near(CellIndex cell) const {
+    std::vector<CellIndex> list;
+    if (!lit_[cell.at()]) return list;
+    const Grid& grid = plan_.stage.grid;
+    // Centres lie on a lattice: a hundredth of a pitch keeps rounding from deciding.
+    for (const CellIndex other : grid.within(grid.centre(cell), (kNearPitches + 0.01) * grid.pitch_m())) {
+      if (other != cell && lit_[other.at()]) list.push_back(other);
+    }
+    return list;
+  }
+
+  void light(std::size_t k) {
+    crowd_.look_at(k, doing_);
+    uses_of(doing_, lit_.size(), uses_);
+    const std::vector<bool>& reserve = crowd_.reserve_at(k);
+    lamp_.resize(lit_.size());
+    for (std::size_t c = 0; c < lit_.size(); ++c) lamp_[c] = lamp_of(uses_[c], reserve[c]);
+  }
+
+  /// Both orders of each pair of lamps that are goals of two people within 1.5 pitches.
+  template <class Visit>
+  void for_near_goals(Visit visit) const {
+    for (const LampAt& lamp : lamps_) {
+      const Lamp& own = lamp_[lamp.cell.at()];
+      if (!is_goal(own)) continue;
+      for (const CellIndex cell : near_[lamp.cell.at()]) {
+        const Lamp& other = lamp_[cell.at()];
+        if (is_goal(other) && other.whose != own.whose) visit(own, other);
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint16_t entry(const Lamp& lamp) const {
+    if (!lamp.role) return kDarkEntry;
+    const std::uint16_t entry = book_.entry(lamp, pattern_[lamp.whose.at()]);
+    return book_.look(entry).brightness == 0 ? kDarkEntry : entry;
+  }
+
+  Result<CueSchedule> write() {
+    const std::size_t row = nodes_ * kChannelsPerNode;
+    std::vector<std::uint16_t> entries(crowd_.moments().size() * row, kDarkEntry);
+    std::vector<bool> used(book_.size(), false);
+    LampConfusion confusion;
+    for (std::size_t k = 0; k < crowd_.moments().size(); ++k) {
+      light(k);
+      const auto put = [&](std::size_t slot, const Lamp& lamp) {
+        const std::uint16_t e = entry(lamp);
+        entries[k * row + slot] = e;
+        if (e != kDarkEntry) used[e] = true;
+      };
+      for (const LampAt& lamp : lamps_) put(lamp.slot, lamp_[lamp.cell.at()]);
+      const std::vector<bool>& reserve = crowd_.reserve_at(k);
+      for (const WornBy& worn : worn_) {
+        const Doing& doing = doing_[worn.performer.at()];
+        put(worn.slot, wearable_of(worn.performer, doing, reserve[doing.cell.at()]));
+      }
+      for_near_goals([&](const Lamp& a, const Lamp& b) {
+        confusion.before += book_.look(book_.entry(a, 0)) == book_.look(book_.entry(b, 0)) ? 1 : 0;
+        const std::uint16_t look_a = entry(a);
+        const std::uint16_t look_b = entry(b);
+        if (look_a == kDarkEntry || look_b == kDarkEntry) return;
+        confusion.after += book_.look(look_a) == book_.look(look_b) ? 1 : 0;
+      });
+    }
+    return number(entries, used, confusion);
+  }
+
+  Result<CueSchedule> number(const std::vector<std::uint16_t>& entries, const std::vector<bool>& used,
+                             LampConfusion confusion) const {
+    std::vector<Look> looks;
+    for (std::size_t e = 0; e < used.size(); ++e) {
+      if (used[e]) looks.push_back(book_.look(static_cast<std::uint16_t>(e)));
+    }
+    std::sort(looks.begin(), looks.end());
+    looks.erase(std::unique(looks.begin(), looks.end()), looks.end());
+    looks.insert(looks.begin(), Look{{0, 0, 0}, Effect::steady, 0});
+    std::vector<LookIndex> number_of(used.size(), kDark);
+    for (std::size_t e = 0; e < used.size(); ++e) {
+      if (!used[e]) continue;
+      const auto found = std::lower_bound(looks.begin() + 1, looks.end(), book_.look(static_cast<std::uint16_t>(e)));
+      number_of[e] = static_cast<LookIndex>(found - looks.begin());
+    }
+    std::vector<LookIndex> table(entries.size(), kDark);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (entries[i] != kDarkEntry) table[i] = number_of[entries[i]];
+    }
+    std::vector<Switch> switches;
+    for (const Moment& moment : crowd_.moments())
+      switches.push_back({moment.time, moment.cause, moment.settled, moment.cue});
+    return CueSchedule(std::move(looks), std::move(switches), nodes_, std::move(table), plan_byte_of(plan_), confusion);
+  }
+
+  const Plan& plan_;
+  Crowd crowd_;
+  LookBook book_;
+  std::size_t nodes_;
+  std::vector<LampAt> lamps_;
+  std::vector<WornBy> worn_;
+  std::vector<bool> lit_;                     ///< cells that have a lamp
+  std::vector<std::vector<CellIndex>> near_;  ///< of each cell: other lit cells within 1.5 pitches
+  std::vector<std::uint8_t> pattern_;         ///< of each performer
+  // The moment under the hand.
+  std::vector<Doing> doing_;
+  std::vector<CellUse> uses_;
+  std::vector<Lamp> lamp_;  ///< of each cell
+};
+
+}  // namespace
+
+CueSchedule::CueSchedule(std::vector<Look> looks, std::vector<Switch> switches, std::size_t nodes,
+                         std::vector<LookIndex> table, std::uint8_t plan_byte, LampConfusion confusion)
+    : looks_(std::move(looks)),
+      switches_(std::move(switches)),
+      nodes_(nodes),
+      table_(std::move(table)),
+      plan_byte_(plan_byte),
+      confusion_(confusion) {
+  FL_CHECK(!switches_.empty() && !looks_.empty() && looks_.size() <= kMostLooks);
+  FL_CHECK(table_.size() == switches_.size() * nodes_ * kChannelsPerNode);
+}
+
+std::span<const LookIndex> CueSchedule::looks_of(std::size_t k, NodeIndex node) const {
+  FL_CHECK(k < switches_.size() && node.at() < nodes_);
+  return std::span(table_).subspan((k * nodes_ + node.at()) * kChannelsPerNode, kChannelsPerNode);
+}
+
+std::size_t CueSchedule::switch_at(Instant show_time) const {
+  const auto after = std::upper_bound(switches_.begin(), switches_.end(), show_time,
+                                      [](Instant t, const Switch& s) { return t < s.time; });
+  return after == switches_.begin() ? 0 : static_cast<std::size_t>(after - switches_.begin()) - 1;
+}
+
+std::uint8_t plan_byte_of(const Plan& plan) {
+  unsigned byte = 0;
+  const std::string& hash = plan.show_hash;
+  if (hash.size() >= 2) {
+    const auto [end, error] = std::from_chars(hash.data() + hash.size() - 2, hash.data() + hash.size(), byte, 16);
+    if (error == std::errc{} && end == hash.data() + hash.size()) return static_cast<std::uint8_t>(byte);
+  }
+  std::uint64_t sum = 0xCBF29CE484222325ULL;  // FNV-1a over cells and times
+  for (const auto& track : plan.tracks) {
+    for (const Mark& mark : track) {
+      sum = (sum ^ mark.cell.value()) * 0x100000001B3ULL;
+      sum = (sum ^ static_cast<std::uint64_t>(mark.time.time_since_epoch().count())) * 0x100000001B3ULL;
+    }
+  }
+  return static_cast<std::uint8_t>(sum >> 56U);
+}
+
+Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
+                                   const std::vector<std::unique_ptr<drivers::Driver>>& drivers) {
+  FL_CHECK(drivers.size() == rig.buses.size());
+  if (!plan.valid) {
+    return refusal("the plan of \"" + plan.title +
+                   "\" is not valid and never lights a marker (footlight plan says what is wrong with it)");
+  }
+  Result<std::vector<CuePlay>> plays = cue_plays(show, plan);
+  if (!plays) return plays.error();
+  Result<CueSchedule> schedule = Compiler(show, plan, rig, *plays).compile();
+  if (!schedule) return schedule;
+  std::vector<Duration> gaps;
+  for (const CuePlay& play : *plays) gaps.push_back(play.gap_after.value_or(kShortestHold));
+  const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);
+  if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show.tempo);
+  return schedule;
+}
+
+}  // namespace footlight::controller

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/dry_run.hpp"
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_show.hpp"
+
+namespace footlight::app {
+namespace {
+
+using tests::lamps_everywhere;
+using tests::random_show;
+using tests::SmallShow;
+
+const std::vector<BusKind> kAllKinds{BusKind::serial, BusKind::modbus_rtu, BusKind::can};
+
+SmallShow small_show() {
+  SmallShow small = random_show(16, 12, 60, 2, 4, 5);
+  small.rig = lamps_everywhere(small.show.stage.grid, kAllKinds, 115'200, 16);
+  return small;
+}
+
+DryRunReport report_of(const SmallShow& small, const std::string& faults, std::uint64_t seed) {
+  DryRunOptions options;
+  options.seed = seed;
+  if (!faults.empty()) options.faults = sim::Faults::parse(faults).value();
+  Result<DryRunReport> report = dry_run(small.show, small.plan, small.rig, options);
+  EXPECT_TRUE(report.has_value()) << (report ? "" : report.error().message);
+  return report ? std::move(report).value() : DryRunReport{};
+}
+
+std::string trouble(const DryRunReport& report) {
+  std::ostringstream text;
+  for (const CueReport& cue : report.cues) {
+    text << "cue " << cue.number << ": " << cue.wrong << " wrong";
+    for (const WrongMarker& marker : cue.first) {
+      text << "; " << marker.node << ":" << marker.channel << " shows " << marker.shows << " for " << marker.should;
+    }
+    text << "\n";
+  }
+  for (const BusReport& bus : report.buses) {
+    text << bus.name << " " << bus.kind << " use " << bus.utilisation << " deliveries " << bus.deliveries << " retries "
+         << bus.retries << " misses " << bus.misses << " quarantines " << bus.quarantines << " boots " << bus.boots
+         << " late latches " << bus.late_latches << " worst " << bus.worst_lateness_ms << " ms\n";
+  }
+  text << "right " << report.right_share << " late " << report.late << " wrong_s " << report.wrong_s << "\n";
+  return text.str();
+}
+
+TEST(DryRun, WithoutFaultsEveryMarkerIsRightAndNothingIsSentAgain) {
+  const DryRunReport report = report_of(small_show(), "", 1);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+  EXPECT_EQ(report.late, 0U) << trouble(report);
+  EXPECT_EQ(report.retries, 0U) << trouble(report);
+  EXPECT_GE(report.right_share, 0.999) << trouble(report);
+  EXPECT_EQ(report.wrong_s, 0) << trouble(report);
+  for (const BusReport& bus : report.buses) {
+    EXPECT_GT(bus.deliveries, 0U) << bus.name;
+    EXPECT_EQ(bus.late_latches, 0U) << trouble(report);
+  }
+  EXPECT_EQ(report.cues.size(), 2U);
+}
+
+TEST(DryRun, EveryMarkerIsRightAtTheEndOfEveryCueThroughLossAndRestarts) {
+  const SmallShow small = small_show();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const DryRunReport report = report_of(small, "loss=5%,reboot=2", seed);
+    EXPECT_EQ(report.wrong_final, 0U) << "seed " << seed << "\n" << trouble(report);
+    EXPECT_GT(report.retries, 0U);
+  }
+}
+
+TEST(DryRun, TheSameSeedGivesTheSameTraceByteForByte) {
+  const SmallShow small = small_show();
+  std::vector<std::string> traces;
+  for (const std::uint64_t seed : {3, 3, 4}) {
+    std::ostringstream trace;
+    DryRunOptions options;
+    options.seed = seed;
+    options.faults = sim::Faults::parse("loss=5%,corrupt=2%,reboot=2").value();
+    options.trace = &trace;
+    ASSERT_TRUE(dry_run(small.show, small.plan, small.rig, options).has_value());
+    traces.push_back(trace.str());
+  }
+  EXPECT_FALSE(traces[0].empty());
+  EXPECT_EQ(traces[0], traces[1]);
+  EXPECT_NE(traces[0], traces[2]);
+}
+
+}  // namespace
+}  // namespace footlight::app
