@@ -130,6 +130,7 @@ class CellsReader {
     for (std::size_t p = 0; p < show_.performers.size(); ++p) ids_.emplace(show_.performers[p].id, p);
   }
 
+  /// A row that says who stands there.
   void read(const std::vector<CsvField>& row, std::size_t performer_column) {
     const CsvField& id = row[performer_column];
     const auto found = ids_.find(id.text);
@@ -140,21 +141,31 @@ class CellsReader {
                    "first in line " + std::to_string(line));
     }
     line = id.line;
-    const CsvField& place = row[cell_column_ ? *cell_column_ : *column_column_];
-    const auto cell = cell_of(row, place);
+    const CsvField& place = place_of(row);
+    const auto cell = free_cell(row, place);
     if (!cell) return;
-    const CellIndex index = show_.stage.grid.index(*cell);
-    if (std::binary_search(show_.stage.blocked.begin(), show_.stage.blocked.end(), index)) {
-      return error(place, "the cell " + cell_name(*cell) + " is blocked", "nobody can stand on a blocked cell");
-    }
-    const auto [other, is_free] = who_.emplace(index.value(), found->second);
+    const auto [other, is_free] = who_.emplace(cell->value(), found->second);
     if (!is_free) {
-      return error(
-          place,
-          "performers " + show_.performers[other->second].id + " and " + id.text + " both stand on " + cell_name(*cell),
-          "first in line " + std::to_string(line_of_performer_[other->second]));
+      const std::string name = show_.stage.grid.name(*cell);
+      return error(place,
+                   "performers " + show_.performers[other->second].id + " and " + id.text + " both stand on " + name,
+                   "first in line " + std::to_string(line_of_performer_[other->second]));
     }
-    cells_[found->second] = index;
+    cells_[found->second] = *cell;
+  }
+
+  /// A row that leaves open who stands there.
+  void read_unnamed(const std::vector<CsvField>& row) {
+    const CsvField& place = place_of(row);
+    const auto cell = free_cell(row, place);
+    if (!cell) return;
+    const auto [first, is_free] = who_.emplace(cell->value(), static_cast<std::size_t>(place.line));
+    if (!is_free) {
+      return error(place, "the cell " + show_.stage.grid.name(*cell) + " stands here for the second time",
+                   "first in line " + std::to_string(first->second));
+    }
+    if (unnamed_ < cells_.size()) cells_[unnamed_] = *cell;
+    ++unnamed_;
   }
 
   /// Columns of the place: `cell`, or `col` and `row`.
@@ -165,8 +176,18 @@ class CellsReader {
     if (cell_column_ ? !column_column_ && !row_column_ : column_column_ && row_column_) return true;
     error(table_.header.front(),
           "the place of a performer is one column \"cell\" or the two columns \"col\" and \"row\"",
-          "performer,col,row with numbers from 0, or performer,cell with names as A1");
+          "performer,col,row with numbers from 0, or performer,cell with names as A1; without performer the planner "
+          "chooses who goes where");
     return false;
+  }
+
+  std::vector<CellIndex> finish_unnamed(std::size_t rows) {
+    if (rows != cells_.size()) {
+      diagnostics_.error({table_.file, 0, 0}, "",
+                         std::to_string(rows) + " cells for " + std::to_string(cells_.size()) + " performers",
+                         "one row for every performer");
+    }
+    return std::move(cells_);
   }
 
   std::vector<CellIndex> finish() {
@@ -192,6 +213,18 @@ class CellsReader {
   }
   [[nodiscard]] std::string ids_hint() const {
     return "ids run from " + show_.performers.front().id + " to " + show_.performers.back().id;
+  }
+  [[nodiscard]] const CsvField& place_of(const std::vector<CsvField>& row) const {
+    return row[cell_column_ ? *cell_column_ : *column_column_];
+  }
+  /// The row's cell when it is on the grid and somebody can stand on it.
+  std::optional<CellIndex> free_cell(const std::vector<CsvField>& row, const CsvField& place) {
+    const auto cell = cell_of(row, place);
+    if (!cell) return std::nullopt;
+    const CellIndex index = show_.stage.grid.index(*cell);
+    if (!std::binary_search(show_.stage.blocked.begin(), show_.stage.blocked.end(), index)) return index;
+    error(place, "the cell " + cell_name(*cell) + " is blocked", "nobody can stand on a blocked cell");
+    return std::nullopt;
   }
   std::optional<Cell> cell_of(const std::vector<CsvField>& row, const CsvField& place) {
     const Grid& grid = show_.stage.grid;
@@ -226,7 +259,8 @@ class CellsReader {
   std::vector<CellIndex> cells_;
   std::vector<int> line_of_performer_;
   std::unordered_map<std::string, std::size_t> ids_;
-  std::unordered_map<std::uint32_t, std::size_t> who_;
+  std::unordered_map<std::uint32_t, std::size_t> who_;  ///< performer, or line where nobody is named, on each cell
+  std::size_t unnamed_ = 0;
   std::optional<std::size_t> cell_column_;
   std::optional<std::size_t> column_column_;
   std::optional<std::size_t> row_column_;
@@ -252,14 +286,24 @@ void read_roster_csv(ShowReading& show, const std::string& file) {
   }
 }
 
-std::vector<CellIndex> read_cells_csv(ShowReading& show, const std::string& file) {
+CellsSource read_cells_csv(ShowReading& show, const std::string& file) {
+  CellsSource out;
+  out.path = file;
   const auto table = load_table(show, file, {"performer", "col", "row", "cell"});
-  if (!table || !show.has_stage || !show.has_performers) return {};
-  const auto performer = needed_column(show, *table, "performer", "performer,col,row or performer,cell");
+  if (!table || !show.has_stage || !show.has_performers) return out;
+  const auto performer = table->column("performer");
+  out.assigned = performer.has_value();
   CellsReader reader(show, *table);
-  if (!performer || !reader.find_columns()) return {};
-  for (const auto& row : table->rows) reader.read(row, *performer);
-  return reader.finish();
+  if (!reader.find_columns()) return out;
+  for (const auto& row : table->rows) {
+    if (performer) {
+      reader.read(row, *performer);
+    } else {
+      reader.read_unnamed(row);
+    }
+  }
+  out.cells = performer ? reader.finish() : reader.finish_unnamed(table->rows.size());
+  return out;
 }
 
 }  // namespace footlight::config

@@ -62,10 +62,8 @@ Source read_source(ShowReading& show, MappingReader from) {
     return ImageSource{existing_file(from, "image", show.folder, files), read_picture(from)};
   }
   refuse_keys(from, {"frames", "fit", "threshold", "invert"}, "it goes with a video or an image");
-  CellsSource cells;
-  if (from.has("cells")) cells.path = existing_file(from, "cells", show.folder, files);
-  if (!cells.path.empty()) cells.cells = read_cells_csv(show, cells.path);
-  return cells;
+  const std::string file = from.has("cells") ? existing_file(from, "cells", show.folder, files) : std::string{};
+  return file.empty() ? CellsSource{} : read_cells_csv(show, file);
 }
 
 Sampling read_sampling(MappingReader sampling) {

@@ -253,7 +253,7 @@ Result<SectionPlan> cells_section(const Show& show, SectionIndex index, const Ce
   station.arrive = show.tempo.at(section.start_count);
   station.depart = show.tempo.at(section.end_count());
   station.cells = source.cells;
-  station.pinned = true;
+  station.pinned = source.assigned;
   station.exact = true;
   for (const CellIndex cell : source.cells) {
     const bool waits = std::binary_search(show.stage.reserve.begin(), show.stage.reserve.end(), cell);
