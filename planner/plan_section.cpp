@@ -193,17 +193,7 @@ class PictureSection {
   }
 
   void fill_stations(SectionPlan& plan) const {
-    int most_waiting = 0;
-    std::vector<CellIndex> picture;
-    std::vector<char> in_any(static_cast<std::size_t>(grid_.size()), 0);
-    for (const Drawing& drawing : drawings_) {
-      most_waiting = std::max(most_waiting, people_ - static_cast<int>(drawing.cells.size()));
-      for (const CellIndex cell : drawing.cells) in_any[cell.at()] = 1;
-    }
-    for (std::size_t i = 0; i < in_any.size(); ++i) {
-      if (in_any[i] != 0) picture.push_back(CellIndex::of(i));
-    }
-    const auto waiting = reserve_order(distance_to(grid_, picture), reserve_, most_waiting);
+    const auto waiting = waiting_places({&grid_, &reserve_, &drawings_, people_});
     const bool video = fps_ > 0;
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       Station station;
@@ -213,8 +203,7 @@ class PictureSection {
       if (video) station.frame = film_.first_frame + keys_[k].frame;
       station.cells = drawings_[k].cells;
       station.in_picture = drawings_[k].in_picture;
-      const std::size_t rest = static_cast<std::size_t>(people_) - station.cells.size();
-      station.cells.insert(station.cells.end(), waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(rest));
+      station.cells.insert(station.cells.end(), waiting[k].begin(), waiting[k].end());
       station.exact = !video || k == 0;
       plan.stations.push_back(std::move(station));
     }

@@ -59,8 +59,7 @@ Drawing draw(const DrawingTask& task) {
   drawing.full = area > 0 ? std::max(1, static_cast<int>(std::lround(area))) : 0;
   const int wanted =
       std::min(std::clamp(drawing.full, std::min(task.least, task.most), task.most), static_cast<int>(order.size()));
-  // Rounding makes ties of what is equal but for the last bits; then the even pattern decides.
-  const auto share = [&](CellIndex cell) { return std::round((*task.shares)[cell.at()] * 1e6); };
+  const auto share = [&](CellIndex cell) { return (*task.shares)[cell.at()]; };
   if (drawing.touched > 0) {
     core.clear();
     for (const CellIndex cell : order) {
@@ -80,15 +79,39 @@ Drawing draw(const DrawingTask& task) {
   return drawing;
 }
 
-std::vector<CellIndex> reserve_order(const std::vector<double>& distance_to_picture,
-                                     const std::vector<CellIndex>& reserve, int most_waiting) {
-  std::vector<CellIndex> order = reserve;
-  const auto away = [&](CellIndex cell) { return std::round(distance_to_picture[cell.at()] * 1e6); };
-  std::sort(order.begin(), order.end(),
-            [&](CellIndex a, CellIndex b) { return std::tuple(away(a), a) < std::tuple(away(b), b); });
-  const auto used = order.begin() + std::clamp(most_waiting, 0, static_cast<int>(order.size()));
-  std::reverse(order.begin(), used);
-  return order;
+std::vector<std::vector<CellIndex>> waiting_places(const WaitingTask& task) {
+  std::vector<char> in_any(static_cast<std::size_t>(task.grid->size()), 0);
+  std::vector<CellIndex> all;
+  for (const Drawing& drawing : *task.drawings) {
+    for (const CellIndex cell : drawing.cells) in_any[cell.at()] = 1;
+  }
+  for (std::size_t i = 0; i < in_any.size(); ++i) {
+    if (in_any[i] != 0) all.push_back(CellIndex::of(i));
+  }
+  const std::vector<double> away_from_all = distance_to(*task.grid, all);
+  std::vector<CellIndex> free = *task.reserve;
+  std::vector<CellIndex> waiting;
+  std::vector<std::vector<CellIndex>> out;
+  for (const Drawing& drawing : *task.drawings) {
+    const std::size_t wanted = static_cast<std::size_t>(task.people) - drawing.cells.size();
+    FL_CHECK(wanted <= task.reserve->size());
+    const bool first = out.empty();
+    const std::vector<double> away =
+        first || drawing.cells.empty() ? away_from_all : distance_to(*task.grid, drawing.cells);
+    const auto nearer = [&](CellIndex a, CellIndex b) {
+      return std::tuple(std::round(away[a.at()] * 1e6), a) < std::tuple(std::round(away[b.at()] * 1e6), b);
+    };
+    auto& from = waiting.size() > wanted ? waiting : free;
+    auto& to = waiting.size() > wanted ? free : waiting;
+    const std::size_t moved = waiting.size() > wanted ? waiting.size() - wanted : wanted - waiting.size();
+    std::sort(from.begin(), from.end(), nearer);
+    const auto end = from.begin() + static_cast<std::ptrdiff_t>(moved);
+    to.insert(to.end(), from.begin(), end);
+    from.erase(from.begin(), end);
+    std::sort(waiting.begin(), waiting.end());
+    out.push_back(waiting);
+  }
+  return out;
 }
 
 }  // namespace footlight::planner

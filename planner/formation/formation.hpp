@@ -41,10 +41,18 @@ struct DrawingTask {
 /// to it.
 [[nodiscard]] Drawing draw(const DrawingTask& task);
 
-/// The order in which reserve cells are given up: the first `n` of the result are the ones that n people in the reserve
-/// stand on, so that two numbers differ by as few cells as possible. Of the `most_waiting` cells nearest to the picture
-/// the farthest are left last.
-[[nodiscard]] std::vector<CellIndex> reserve_order(const std::vector<double>& distance_to_picture,
-                                                   const std::vector<CellIndex>& reserve, int most_waiting);
+/// Who waits where from frame to frame.
+struct WaitingTask {
+  const Grid* grid = nullptr;
+  const std::vector<CellIndex>* reserve = nullptr;  ///< ascending; cells that can be stood on
+  const std::vector<Drawing>* drawings = nullptr;   ///< one a frame
+  int people = 0;
+};
+
+/// The reserve cells that are occupied in each frame: at first the ones nearest to all pictures together, then as few
+/// changes as the number of people allows, always at the cells nearest to the frame's own picture, so that who enters
+/// and who leaves has the shortest way. @return for each frame ascending cells; a drawing and its waiting cells are
+/// `people` together. O(frames x cells log cells)
+[[nodiscard]] std::vector<std::vector<CellIndex>> waiting_places(const WaitingTask& task);
 
 }  // namespace footlight::planner

@@ -46,7 +46,8 @@ std::vector<double> cell_shares(const SummedArea& picture, const Grid& grid, con
     const double x = map[0] * centre.x + map[1] * centre.y + map[2];
     const double y = map[3] * centre.x + map[4] * centre.y + map[5];
     const double area = picture.area(x - side / 2, y - side / 2, x + side / 2, y + side / 2);
-    shares[i] = std::clamp(area / (side * side), 0.0, 1.0);
+    // Six digits: what is equal but for the last bits must compare equal, and noise is no picture.
+    shares[i] = std::clamp(std::round(area / (side * side) * 1e6) / 1e6, 0.0, 1.0);
   }
   return shares;
 }

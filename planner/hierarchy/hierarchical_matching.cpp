@@ -8,6 +8,7 @@
 #include "planner/assignment/assignment.hpp"
 #include "planner/hierarchy/regions.hpp"
 #include "planner/hierarchy/transport.hpp"
+#include "planner/repair/exchange.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -122,7 +123,15 @@ class Matcher {
 std::vector<std::uint32_t> match_hierarchically(const Grid& grid, std::span<const CellIndex> sources,
                                                 std::span<const CellIndex> targets, const PlannerOptions& options) {
   FL_CHECK(sources.size() == targets.size());
-  return Matcher(grid, sources, targets, options).run();
+  std::vector<std::uint32_t> target_of = Matcher(grid, sources, targets, options).run();
+  if (options.layers > 1) {
+    std::vector<Point> starts;
+    std::vector<Point> goals;
+    for (const CellIndex cell : sources) starts.push_back(grid.centre(cell));
+    for (const CellIndex cell : targets) goals.push_back(grid.centre(cell));
+    exchange(starts, goals, target_of, grid.clearance_bound_m(), [](Point, Point) { return true; });
+  }
+  return target_of;
 }
 
 std::vector<std::uint32_t> pair_formations(const Grid& grid, std::span<const CellIndex> sources,

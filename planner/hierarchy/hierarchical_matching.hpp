@@ -16,8 +16,8 @@ namespace footlight::planner {
 /// The coarsest division of more layers has regions four times as large for each layer above two.
 ///
 /// @param sources, targets  the same number of distinct cells
-/// @return position in `targets` for each source, a bijection. Conflicts may be left at the borders of the parts;
-/// `exchange` removes them. Deterministic. Thread: reentrant.
+/// @return position in `targets` for each source, a bijection. Conflicts at the borders of the parts are
+/// exchanged away. Deterministic. Thread: reentrant.
 [[nodiscard]] std::vector<std::uint32_t> match_hierarchically(const Grid& grid, std::span<const CellIndex> sources,
                                                               std::span<const CellIndex> targets,
                                                               const PlannerOptions& options);

@@ -14,6 +14,8 @@ namespace {
 constexpr double kRounding_m = 1e-9;
 /// On the way around blocked cells there is a stop whenever somebody may have walked so many pitches.
 constexpr double kViaPitches = 4.5;
+/// Rounds in which only one of two people in conflict has to wait.
+constexpr int kPatience = 4;
 
 class ChainBuilder {
  public:
@@ -32,12 +34,6 @@ class ChainBuilder {
     follow_slots();
     for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
     if (!pace()) return std::nullopt;
-    chain_.legs.resize(chain_.longest_m.size());
-    const bool done = for_each_index(chain_.legs.size(), "walks", progress_, [&](std::size_t k) {
-      chain_.legs[k] =
-          settle({&ways_, chain_.stops[k].cells, chain_.stops[k + 1].cells, chain_.longest_m[k], task_.clearance_m});
-    });
-    if (!done) return std::nullopt;
     return std::move(chain_);
   }
 
@@ -164,21 +160,66 @@ class ChainBuilder {
     chain_.stops.front().cells = chain_.stops.front().own;
     for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
       if (progress_.stopped()) return false;
+      progress_.tell("walks", static_cast<double>(k) / static_cast<double>(chain_.stops.size()));
       Stop& stop = chain_.stops[k];
       if (exact(stop)) {
         stop.cells = stop.own;
+        chain_.legs.push_back(settle(leg_to(k)));
         continue;
       }
       if (!stop.station) aim_on_the_way(k, next_formation[k], wanted[k]);
       const std::span<const Wanted> onward =
           k + 1 < wanted.size() ? std::span<const Wanted>(wanted[k + 1]) : std::span<const Wanted>();
-      stop.cells = snap({&ways_, chain_.stops[k - 1].cells, instants[k].own, wanted[k], onward, chain_.longest_m[k - 1],
-                         instants[k].longest_m});
+      step(k, {&ways_,
+               chain_.stops[k - 1].cells,
+               instants[k].own,
+               wanted[k],
+               onward,
+               chain_.longest_m[k - 1],
+               instants[k].longest_m,
+               {}});
       for (std::size_t i = 0; i < stop.own.size(); ++i) {
         stop.given_way += stop.cells[i] != stop.own[i] && reserve_[stop.own[i].at()] == 0 ? 1 : 0;
       }
     }
+    progress_.tell("walks", 1);
     return true;
+  }
+
+  [[nodiscard]] LegTask leg_to(std::size_t k) const {
+    return {&ways_, chain_.stops[k - 1].cells, chain_.stops[k].cells, chain_.longest_m[k - 1], task_.clearance_m};
+  }
+
+  /// Snaps and pairs; who conflicts waits, and whoever conflicts with those, until nobody does. If all waited nobody
+  /// would, so it ends.
+  void step(std::size_t k, SnapTask snap_task) {
+    std::vector<char> hold(snap_task.now.size(), 0);
+    for (int round = 0;; ++round) {
+      snap_task.hold = hold;
+      chain_.stops[k].cells = snap(snap_task);
+      Leg leg = settle(leg_to(k));
+      if (leg.conflicts.empty()) {
+        chain_.legs.push_back(std::move(leg));
+        return;
+      }
+      bool added = false;
+      for (const auto& [a, b] : leg.conflicts) {
+        // The one with the shorter walk waits; after a few rounds both do.
+        const bool a_waits = walk_m(k, leg, a) <= walk_m(k, leg, b);
+        for (const std::uint32_t slot : {a_waits ? a : b, a_waits ? b : a}) {
+          if (hold[slot] != 0) continue;
+          hold[slot] = 1;
+          added = true;
+          if (round < kPatience) break;
+        }
+      }
+      if (!added) std::fill(hold.begin(), hold.end(), char{1});
+    }
+  }
+
+  [[nodiscard]] double walk_m(std::size_t k, const Leg& leg, std::uint32_t slot) const {
+    return distance(grid_.centre(chain_.stops[k - 1].cells[slot]),
+                    grid_.centre(chain_.stops[k].cells[leg.target_of[slot]]));
   }
 
   /// Everybody uses the time that is left evenly.

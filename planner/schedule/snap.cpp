@@ -26,7 +26,12 @@ class Snapper {
     std::vector<CellIndex> next(people);
     std::vector<std::size_t> moving;
     for (std::size_t i = 0; i < people; ++i) {
-      if (task_.wanted[i].own && reachable(i, task_.own[i])) {
+      if (holds(i)) taken_[task_.now[i].at()] = 1;
+    }
+    for (std::size_t i = 0; i < people; ++i) {
+      if (holds(i)) {
+        next[i] = task_.now[i];
+      } else if (task_.wanted[i].own && taken_[task_.own[i].at()] == 0 && reachable(i, task_.own[i])) {
         next[i] = task_.own[i];
         taken_[next[i].at()] = 1;
       } else {
@@ -47,6 +52,8 @@ class Snapper {
   }
 
  private:
+  [[nodiscard]] bool holds(std::size_t slot) const { return !task_.hold.empty() && task_.hold[slot] != 0; }
+
   [[nodiscard]] bool reachable(std::size_t slot, CellIndex cell) const {
     const Point from = grid_.centre(task_.now[slot]);
     const Point to = grid_.centre(cell);
@@ -87,14 +94,21 @@ class Snapper {
   /// Everybody may be displaced. Staying where they are is always an answer.
   std::vector<CellIndex> together() {
     std::fill(taken_.begin(), taken_.end(), char{0});
+    for (std::size_t i = 0; i < task_.now.size(); ++i) {
+      if (holds(i)) taken_[task_.now[i].at()] = 1;
+    }
     std::vector<std::vector<Choice>> choices(task_.now.size());
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      const bool on_time = task_.wanted[i].own && reachable(i, task_.own[i]);
+      if (holds(i)) {
+        choices[i] = {{task_.now[i], 0.0}};
+        continue;
+      }
+      const bool on_time = task_.wanted[i].own && taken_[task_.own[i].at()] == 0 && reachable(i, task_.own[i]);
       choices[i] = on_time ? std::vector<Choice>{{task_.own[i], 0.0}} : places_on_the_way(i, 2.3 * pitch_);
       if (!on_time) continue;
       const Point at = grid_.centre(task_.own[i]);
       for (const CellIndex cell : grid_.within(at, 1.5 * pitch_)) {
-        if (cell == task_.own[i] || !ways_.can_stand(cell) || !reachable(i, cell)) continue;
+        if (cell == task_.own[i] || taken_[cell.at()] != 0 || !ways_.can_stand(cell) || !reachable(i, cell)) continue;
         choices[i].push_back({cell, 10 + cost(i, at, cell)});
       }
       const CellIndex stay = task_.now[i];

@@ -17,6 +17,7 @@ struct SnapTask {
   std::span<const Wanted> onward;  ///< at the instant after that; empty at the end
   double longest_m = 0;            ///< from now to the next instant
   double onward_m = 0;             ///< from the next instant to the one after
+  std::span<const char> hold;      ///< one flag a slot: stays where it is; empty: nobody has to
 };
 
 /// Where the slots are next: whoever can reach the own cell stands on it; everybody else goes toward what is wanted as

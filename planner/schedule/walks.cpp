@@ -103,9 +103,9 @@ class Settler {
   void resolve(Leg& leg, std::vector<NearPair> close) const {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> penalty;
     std::vector<std::uint32_t> trial = leg.target_of;
-    leg.conflicts = static_cast<int>(close.size());
+    name_conflicts(leg, close);
     const double toll = 2 * grid_.pitch_m() * grid_.pitch_m();
-    for (int round = 0; round < kRounds && leg.conflicts > 0; ++round) {
+    for (int round = 0; round < kRounds && !leg.conflicts.empty(); ++round) {
       for (const NearPair& pair : close) {
         penalty[{pair.a, trial[pair.a]}] += toll;
         penalty[{pair.b, trial[pair.b]}] += toll;
@@ -120,11 +120,16 @@ class Settler {
       trial = std::move(best->target_of);
       const int exchanged = swap_conflicts(trial);
       close = close_pairs(trial);
-      if (static_cast<int>(close.size()) >= leg.conflicts) continue;
-      leg.conflicts = static_cast<int>(close.size());
+      if (close.size() >= leg.conflicts.size()) continue;
+      name_conflicts(leg, close);
       leg.target_of = trial;
       leg.exchanges += exchanged;
     }
+  }
+
+  static void name_conflicts(Leg& leg, const std::vector<NearPair>& close) {
+    leg.conflicts.clear();
+    for (const NearPair& pair : close) leg.conflicts.emplace_back(pair.a, pair.b);
   }
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -138,9 +143,5 @@ class Settler {
 }  // namespace
 
 Leg settle(const LegTask& task) { return Settler(task).run(); }
-
-int conflicts(const LegTask& task, const std::vector<std::uint32_t>& target_of) {
-  return static_cast<int>(Settler(task).close_pairs(target_of).size());
-}
 
 }  // namespace footlight::planner

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "planner/schedule/ways.hpp"
@@ -21,7 +22,8 @@ struct LegTask {
 struct Leg {
   std::vector<std::uint32_t> target_of;  ///< position in `to` for each of `from`, a bijection
   int exchanges = 0;
-  int conflicts = 0;     ///< pairs below the clearance that could not be solved; such a plan is refused
+  /// Pairs (positions in `from`) below the clearance that could not be solved; empty when the leg is clear.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> conflicts;
   bool walkable = true;  ///< every walk is short enough and clear of blocked cells
 };
 
@@ -29,8 +31,5 @@ struct Leg {
 /// that conflict are made dearer, and the people among targets near their own are matched again until no conflict is
 /// left. A pairing that is not walkable at the start is replaced by the exact one under the limits where there is one.
 [[nodiscard]] Leg settle(const LegTask& task);
-
-/// Pairs of people who come nearer than the clearance.
-[[nodiscard]] int conflicts(const LegTask& task, const std::vector<std::uint32_t>& target_of);
 
 }  // namespace footlight::planner
