@@ -42,7 +42,7 @@ std::size_t RtuBus::add(std::unique_ptr<SimulatedNode> node) {
 
 void RtuBus::power_off(std::size_t slot) {
   nodes_[slot]->power_off();
-  ++answers_[slot].generation;
+  answers_[slot] = {{}, kStart, answers_[slot].generation + 1};
   line_.cut(static_cast<int>(slot));
 }
 
@@ -121,10 +121,13 @@ void RtuBus::act(std::uint64_t token_of_event) {
     case kNodesHear:
       nodes_hear();
       return;
-    case kNodeAnswers:
-      if (answers_[slot].generation != generation_of(token_of_event)) return;
-      line_.say(static_cast<int>(slot), std::exchange(answers_[slot].bytes, {}), around_.world.now());
+    case kNodeAnswers: {
+      Answers& answers = answers_[slot];
+      if (answers.generation != generation_of(token_of_event)) return;
+      line_.say(static_cast<int>(slot), std::move(answers.waiting.front()), around_.world.now());
+      answers.waiting.pop_front();
       return;
+    }
     case kGiveUp:
       give_up(generation_of(token_of_event));
       return;
@@ -136,23 +139,25 @@ void RtuBus::act(std::uint64_t token_of_event) {
 }
 
 void RtuBus::nodes_hear() {
-  for (int times = heard_twice_ ? 2 : 1; times > 0; --times) {
+  for (int time = 0; time < (heard_twice_ ? 2 : 1); ++time) {
     for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-      if (nodes_[slot]->powered() && !missed_[slot]) node_hears(slot);
+      if (nodes_[slot]->powered() && !missed_[slot]) node_hears(slot, time > 0);
     }
   }
 }
 
-void RtuBus::node_hears(std::size_t slot) {
+void RtuBus::node_hears(std::size_t slot, bool copy) {
   auto answer = markers_[slot].receive_rtu(in_air_, around_.world.now());
   nodes_[slot]->after_receiving();
-  if (answer.empty()) return;
+  if (answer.empty() || copy) return;
   const Duration turnaround =
       kShortestTurnaround + around_.timing.up_to(kLongestTurnaround - kShortestTurnaround) + around_.faults.lateness();
-  answers_[slot].bytes = std::move(answer);
+  Answers& answers = answers_[slot];
   // The turnaround runs from the last bit of the request, and never ends before the silence has been heard.
-  around_.world.schedule(around_.world.now() + std::max(turnaround, silence_) - silence_, *this,
-                         token(kNodeAnswers, slot, ++answers_[slot].generation));
+  const Instant at = std::max(around_.world.now() + std::max(turnaround, silence_) - silence_, answers.free_at);
+  answers.free_at = at + line_.time_of(answer.size()) + silence_;
+  answers.waiting.push_back(std::move(answer));
+  around_.world.schedule(at, *this, token(kNodeAnswers, slot, answers.generation));
 }
 
 void RtuBus::take(std::span<const std::uint8_t> frame) {

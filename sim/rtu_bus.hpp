@@ -18,7 +18,8 @@ namespace footlight::sim {
 ///
 /// The port is as forgetful as real ones: a reply that comes when nobody waits any more stays in its receive buffer and
 /// is the first thing that the next request hears. It passes over replies of other units, and a broadcast, which has no
-/// reply, empties the buffer.
+/// reply, empties the buffer. So after one late reply every later request to that node is answered by the reply before
+/// it, without an error, as libmodbus 3.1.6 does it. A frame that is heard twice is obeyed twice and answered once.
 class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private SharedLine::Listener {
  public:
   static constexpr Duration kReplyTimeout = milliseconds(50);  ///< from the last bit of the request
@@ -39,16 +40,18 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
  private:
   enum Kind : unsigned { kNodesHear, kNodeAnswers, kGiveUp, kBroadcastOver };
   enum class Phase { idle, sending, waiting, broadcast };
-  struct Answer {
-    std::vector<std::uint8_t> bytes;
-    std::uint32_t generation = 0;
+  /// Of a slow device, too: it answers every request, one after the other.
+  struct Answers {
+    std::deque<std::vector<std::uint8_t>> waiting;
+    Instant free_at = kStart;      ///< the last of them has been given
+    std::uint32_t generation = 0;  ///< changes with the power
   };
 
   void heard(int speaker, std::span<const std::uint8_t> bytes, bool copy) override;
   void draw_losses(int speaker, std::string& note) override;
   void request_is_out();
   void nodes_hear();
-  void node_hears(std::size_t slot);
+  void node_hears(std::size_t slot, bool copy);
   void take(std::span<const std::uint8_t> frame);
   void give_up(std::uint32_t generation);
   void conclude(drivers::ModbusReply reply);
@@ -58,7 +61,7 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   Duration silence_;
   SharedLine line_;
   std::vector<ModbusMarker> markers_;
-  std::vector<Answer> answers_;
+  std::vector<Answers> answers_;
   std::vector<bool> missed_;
   bool controller_missed_ = false;
 

@@ -6,18 +6,13 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "can_frame.hpp"
+
 namespace footlight::sim {
 namespace {
 
 using drivers::CanFrame;
 using Reaction = CanopenMarker::Reaction;
-
-CanFrame frame(int id, std::initializer_list<int> bytes) {
-  CanFrame made{static_cast<std::uint16_t>(id), static_cast<std::uint8_t>(bytes.size()), {}};
-  std::size_t i = 0;
-  for (const int byte : bytes) made.data[i++] = static_cast<std::uint8_t>(byte);
-  return made;
-}
 
 /// Node 5 with ten channels, switched on.
 struct CanopenMarkerTest : ::testing::Test {
