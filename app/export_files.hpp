@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/plan.hpp"
+#include "core/show.hpp"
+
+namespace footlight::app {
+
+// The three files that other programs read (docs/export.md). Numbers survive a round trip; the same instant prints the
+// same text in every row and file.
+
+/// `performer,count,time_s,col,row,x_m,y_m,look,section`, a row for each mark, by performer in the show's order, then
+/// time. `look` is what the lamp of the cell tells from this mark on: `dark` in the reserve, `here` for who stays,
+/// `handover` where the performer leaves and somebody else comes before the next mark, `arrive` where the performer
+/// passes on the way.
+[[nodiscard]] std::string marks_csv(const Plan& plan, const Show& show);
+/// `formation,count,time_s,frame,performer,col,row`; no frame where there is no video.
+[[nodiscard]] std::string formations_csv(const Plan& plan);
+/// Grid, limits, sections and how films lie on the stage. Media paths are as seen from the show file's folder.
+[[nodiscard]] std::string stage_json(const Plan& plan, const Show& show);
+
+}  // namespace footlight::app

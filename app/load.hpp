@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session.hpp"
+#include "config/show_file.hpp"
+#include "core/film.hpp"
+#include "core/plan.hpp"
+#include "core/result.hpp"
+
+namespace footlight::app {
+
+/// Films of a show, one for each section; absent for explicit cells.
+using Films = std::vector<std::optional<Film>>;
+
+/// Reads a show with its rig and tells its warnings. Errors: all of its lines in one message.
+[[nodiscard]] Result<config::LoadedShow> read_show(Session& session, const std::string& file);
+
+/// Decodes every section's film, gives a video without a duration its own length, and looks again whether sections
+/// overlap. All that is wrong is reported at once, each at its section.
+[[nodiscard]] Result<Films> decode_films(Session& session, config::LoadedShow& loaded);
+
+/// Gives videos without a duration the length they have in a plan of this very show, without decoding them.
+void take_durations(Show& show, const Plan& plan);
+
+}  // namespace footlight::app

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "app/check_command.hpp"
+#include "app/command.hpp"
+#include "app/export_command.hpp"
+#include "app/measure_command.hpp"
+#include "app/new_command.hpp"
+#include "app/plan_command.hpp"
+#include "app/session.hpp"
+
+namespace footlight::app {
+namespace {
+
+constexpr AddCommand kCommands[] = {
+    add_new_command, add_check_command, add_plan_command, add_measure_command, add_export_command,
+};
+
+constexpr const char* kFooter =
+    "Exit status: 0 ok, 1 internal error, 2 wrong input, 3 plan refused, 4 device, 130 interrupted.\n\n"
+    "Start here:\n  footlight new my-show\n  footlight plan my-show/show.yaml --pictures out\n"
+    "  footlight COMMAND --help";
+
+/// Results that did not reach their reader are no success.
+int finish(int status, Session& session) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  return session.fail(input_error(std::string("cannot write the result to stdout: ") + std::strerror(errno)));
+}
+
+int run(int argc, char** argv) {
+  Session session(stop_on_signals());
+  Chosen chosen;
+  CLI::App program("Footlight: plans, proves and lights where everybody stands and walks.", "footlight");
+  program.set_version_flag("--version", "footlight " FOOTLIGHT_VERSION);
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  program.footer(kFooter);
+  for (const AddCommand add : kCommands) add(program, session, chosen);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return finish(program.exit(asked), session);
+  } catch (const CLI::ParseError& error) {
+    return session.fail(input_error(std::string(error.what()) + " (footlight --help tells what there is)"));
+  }
+  return finish(chosen(), session);
+}
+
+}  // namespace
+}  // namespace footlight::app
+
+int main(int argc, char** argv) {
+  try {
+    return footlight::app::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: internal: %s (please report this)\n", error.what());
+    return 1;
+  }
+}

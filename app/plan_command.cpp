@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/plan_command.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/picture.hpp"
+#include "app/plan_step.hpp"
+#include "app/plan_summary.hpp"
+#include "config/output_file.hpp"
+#include "config/plan_file.hpp"
+
+namespace footlight::app {
+namespace {
+
+struct Options {
+  PlanChoice choice;
+  std::string output;
+  std::string pictures;
+};
+
+Status<> write_pictures(Session& session, const PlannedShow& planned, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return input_error(fmt::format("cannot make the folder '{}': {}", folder, error.message()));
+  const Plan& plan = planned.plan();
+  for (std::size_t i = 0; i < plan.formations.size(); ++i) {
+    if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while drawing pictures"};
+    session.tell("drawing pictures", static_cast<double>(i) / static_cast<double>(plan.formations.size()));
+    const auto index = FormationIndex::of(i);
+    const auto& film = planned.films->at(plan.formations[i].section.at());
+    const auto png = formation_png(plan, planned.loaded.show, index, film ? &*film : nullptr);
+    auto done = config::write_file(std::filesystem::path(folder) / picture_name(plan, index), png);
+    if (!done) return done;
+  }
+  session.clear_line();
+  return Done{};
+}
+
+int run(Session& session, const Options& options) {
+  auto planned = plan_anew(session, options.choice);
+  if (!planned) return session.fail(planned.error());
+  const auto refused = refusal_of(planned->planned);
+  const std::string file = options.output.empty() ? plan_file_beside(options.choice.show) : options.output;
+  if (!refused) {
+    if (auto done = config::save_plan(planned->plan(), file); !done) return session.fail(done.error());
+  }
+  // Pictures of a refused plan help to see why; they say so themselves.
+  if (!options.pictures.empty()) {
+    if (auto done = write_pictures(session, *planned, options.pictures); !done) return session.fail(done.error());
+  }
+  session.print(session.json ? plan_json(planned->loaded.show, planned->planned)
+                             : plan_text(planned->loaded.show, planned->planned));
+  if (refused) return session.fail(*refused);
+  session.note(fmt::format("wrote {}", file));
+  return 0;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
+  CLI::App* command = program.add_subcommand("plan", "Plan where everybody stands and walks, and prove it");
+  auto options = std::make_shared<Options>();
+  command->add_option("SHOW", options->choice.show, "the show file (YAML)")->required();
+  command->add_option("-o,--output", options->output, "the plan file to write (default: SHOW.plan beside the show)");
+  command->add_option("--pictures", options->pictures, "draw a picture of every key formation into this folder");
+  command
+      ->add_option("--threads", options->choice.threads,
+                   "plan with so many threads (the plan is the same for any number)")
+      ->check(CLI::Range(1, 1024));
+  session.add_options(*command, true);
+  command->footer(
+      "A plan that somebody could not walk, or in which people would come too close, is refused with who, where and\n"
+      "when (exit status 3), and no plan file is written.\n\n"
+      "Examples:\n  footlight plan show.yaml\n  footlight plan show.yaml --pictures out/show\n"
+      "  footlight plan show.yaml -o monday.plan --json\n");
+  command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
+}
+
+}  // namespace footlight::app

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/load.hpp"
+#include "app/session.hpp"
+#include "core/plan.hpp"
+#include "core/result.hpp"
+#include "planner/plan_show.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace footlight::app {
+
+/// Where a command takes its plan from.
+struct PlanChoice {
+  std::string show;  ///< the show file
+  std::string plan;  ///< a plan file that must be of this show; empty: the one beside the show where it fits
+  int threads = 0;   ///< 0: as many as there are processors
+
+  /// SHOW, --plan and --threads.
+  void add_options(CLI::App& command);
+};
+
+/// A show and its plan.
+struct PlannedShow {
+  config::LoadedShow loaded;
+  std::optional<Films> films;  ///< absent when the plan came from a file and nobody asked for them
+  planner::Planned planned;    ///< `shortest` is empty when the plan came from a file
+  [[nodiscard]] const Plan& plan() const { return planned.plan; }
+};
+
+/// "shows/vine/show.plan" for "shows/vine/show.yaml".
+[[nodiscard]] std::string plan_file_beside(const std::string& show_file);
+
+/// Reads the show and takes its plan from a file of the same show (same bytes of every file it reads), else plans it
+/// and says so. A refused plan is returned with its refusal; see `refusal_of`.
+/// Errors: whatever the show, its media or the plan file have wrong; interrupted.
+[[nodiscard]] Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool want_films);
+
+/// Reads and plans, whatever plan files there are.
+[[nodiscard]] Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice);
+
+/// Nothing for a valid plan; else why it is refused, in one message of a line each.
+[[nodiscard]] std::optional<Error> refusal_of(const planner::Planned& planned);
+
+}  // namespace footlight::app
