@@ -130,81 +130,48 @@ class CellsReader {
     for (std::size_t p = 0; p < show_.performers.size(); ++p) ids_.emplace(show_.performers[p].id, p);
   }
 
-  /// A row that says who stands there.
-  void read(const std::vector<CsvField>& row, std::size_t performer_column) {
-    const CsvField& id = row[performer_column];
-    const auto found = ids_.find(id.text);
-    if (found == ids_.end()) return error(id, "no performer has the id " + in_quotes(id.text), ids_hint());
-    int& line = line_of_performer_[found->second];
-    if (line != 0) {
-      return error(id, "performer " + id.text + " stands here for the second time",
-                   "first in line " + std::to_string(line));
+  /// One row; without a column of performers the next one of them in the list.
+  void read(const std::vector<CsvField>& row) {
+    std::size_t who = next_++;
+    if (performer_column_) {
+      const CsvField& id = row[*performer_column_];
+      const auto found = ids_.find(id.text);
+      if (found == ids_.end()) return error(id, "no performer has the id " + in_quotes(id.text), ids_hint());
+      who = found->second;
+      if (line_of_performer_[who] != 0) {
+        return error(id, "performer " + id.text + " stands here for the second time",
+                     "first in line " + std::to_string(line_of_performer_[who]));
+      }
+    } else if (who >= cells_.size()) {
+      return;  // counted; finish() says so
     }
-    line = id.line;
-    const CsvField& place = place_of(row);
-    const auto cell = free_cell(row, place);
-    if (!cell) return;
-    const auto [other, is_free] = who_.emplace(cell->value(), found->second);
-    if (!is_free) {
-      const std::string name = show_.stage.grid.name(*cell);
-      return error(place,
-                   "performers " + show_.performers[other->second].id + " and " + id.text + " both stand on " + name,
-                   "first in line " + std::to_string(line_of_performer_[other->second]));
-    }
-    cells_[found->second] = *cell;
-  }
-
-  /// A row that leaves open who stands there.
-  void read_unnamed(const std::vector<CsvField>& row) {
-    const CsvField& place = place_of(row);
-    const auto cell = free_cell(row, place);
-    if (!cell) return;
-    const auto [first, is_free] = who_.emplace(cell->value(), static_cast<std::size_t>(place.line));
-    if (!is_free) {
-      return error(place, "the cell " + show_.stage.grid.name(*cell) + " stands here for the second time",
-                   "first in line " + std::to_string(first->second));
-    }
-    if (unnamed_ < cells_.size()) cells_[unnamed_] = *cell;
-    ++unnamed_;
+    const CsvField& place = row[cell_column_ ? *cell_column_ : *column_column_];
+    line_of_performer_[who] = place.line;
+    if (const auto cell = cell_of(row, place)) take(who, *cell, place);
   }
 
   /// Columns of the place: `cell`, or `col` and `row`.
   bool find_columns() {
+    performer_column_ = table_.column("performer");
     cell_column_ = table_.column("cell");
     column_column_ = table_.column("col");
     row_column_ = table_.column("row");
     if (cell_column_ ? !column_column_ && !row_column_ : column_column_ && row_column_) return true;
     error(table_.header.front(),
           "the place of a performer is one column \"cell\" or the two columns \"col\" and \"row\"",
-          "performer,col,row with numbers from 0, or performer,cell with names as A1; without performer the planner "
-          "chooses who goes where");
+          "performer,col,row with numbers from 0, or performer,cell with names as A1");
     return false;
   }
 
-  std::vector<CellIndex> finish_unnamed(std::size_t rows) {
-    if (rows != cells_.size()) {
+  CellsSource finish() {
+    if (performer_column_) {
+      say_who_is_missing();
+    } else if (next_ != cells_.size()) {
       diagnostics_.error({table_.file, 0, 0}, "",
-                         std::to_string(rows) + " cells for " + std::to_string(cells_.size()) + " performers",
+                         std::to_string(next_) + " cells for " + std::to_string(cells_.size()) + " performers",
                          "one row for every performer");
     }
-    return std::move(cells_);
-  }
-
-  std::vector<CellIndex> finish() {
-    std::size_t missing = 0;
-    std::string first;
-    for (std::size_t p = 0; p < line_of_performer_.size(); ++p) {
-      if (line_of_performer_[p] != 0) continue;
-      if (missing++ == 0) first = show_.performers[p].id;
-    }
-    if (missing > 0) {
-      const bool one = missing == 1;
-      diagnostics_.error({table_.file, 0, 0}, "",
-                         one ? "performer " + first + " has no cell"
-                             : std::to_string(missing) + " performers have no cell, the first is " + first,
-                         "one row for every performer");
-    }
-    return std::move(cells_);
+    return {table_.file, std::move(cells_), !performer_column_};
   }
 
  private:
@@ -214,17 +181,36 @@ class CellsReader {
   [[nodiscard]] std::string ids_hint() const {
     return "ids run from " + show_.performers.front().id + " to " + show_.performers.back().id;
   }
-  [[nodiscard]] const CsvField& place_of(const std::vector<CsvField>& row) const {
-    return row[cell_column_ ? *cell_column_ : *column_column_];
+  void say_who_is_missing() {
+    std::size_t missing = 0;
+    std::string first;
+    for (std::size_t p = 0; p < line_of_performer_.size(); ++p) {
+      if (line_of_performer_[p] != 0) continue;
+      if (missing++ == 0) first = show_.performers[p].id;
+    }
+    if (missing == 0) return;
+    diagnostics_.error({table_.file, 0, 0}, "",
+                       missing == 1 ? "performer " + first + " has no cell"
+                                    : std::to_string(missing) + " performers have no cell, the first is " + first,
+                       "one row for every performer");
   }
-  /// The row's cell when it is on the grid and somebody can stand on it.
-  std::optional<CellIndex> free_cell(const std::vector<CsvField>& row, const CsvField& place) {
-    const auto cell = cell_of(row, place);
-    if (!cell) return std::nullopt;
-    const CellIndex index = show_.stage.grid.index(*cell);
-    if (!std::binary_search(show_.stage.blocked.begin(), show_.stage.blocked.end(), index)) return index;
-    error(place, "the cell " + cell_name(*cell) + " is blocked", "nobody can stand on a blocked cell");
-    return std::nullopt;
+  void take(std::size_t who, Cell cell, const CsvField& place) {
+    const CellIndex index = show_.stage.grid.index(cell);
+    if (std::binary_search(show_.stage.blocked.begin(), show_.stage.blocked.end(), index)) {
+      return error(place, "the cell " + cell_name(cell) + " is blocked", "nobody can stand on a blocked cell");
+    }
+    const auto [other, is_free] = who_.emplace(index.value(), who);
+    if (!is_free) {
+      const std::string first = "first in line " + std::to_string(line_of_performer_[other->second]);
+      if (!performer_column_) {
+        return error(place, "the cell " + cell_name(cell) + " stands here for the second time", first);
+      }
+      return error(place,
+                   "performers " + show_.performers[other->second].id + " and " + show_.performers[who].id +
+                       " both stand on " + cell_name(cell),
+                   first);
+    }
+    cells_[who] = index;
   }
   std::optional<Cell> cell_of(const std::vector<CsvField>& row, const CsvField& place) {
     const Grid& grid = show_.stage.grid;
@@ -259,8 +245,9 @@ class CellsReader {
   std::vector<CellIndex> cells_;
   std::vector<int> line_of_performer_;
   std::unordered_map<std::string, std::size_t> ids_;
-  std::unordered_map<std::uint32_t, std::size_t> who_;  ///< performer, or line where nobody is named, on each cell
-  std::size_t unnamed_ = 0;
+  std::unordered_map<std::uint32_t, std::size_t> who_;
+  std::size_t next_ = 0;  // rows read
+  std::optional<std::size_t> performer_column_;
   std::optional<std::size_t> cell_column_;
   std::optional<std::size_t> column_column_;
   std::optional<std::size_t> row_column_;
@@ -287,23 +274,12 @@ void read_roster_csv(ShowReading& show, const std::string& file) {
 }
 
 CellsSource read_cells_csv(ShowReading& show, const std::string& file) {
-  CellsSource out;
-  out.path = file;
   const auto table = load_table(show, file, {"performer", "col", "row", "cell"});
-  if (!table || !show.has_stage || !show.has_performers) return out;
-  const auto performer = table->column("performer");
-  out.assigned = performer.has_value();
+  if (!table || !show.has_stage || !show.has_performers) return {file, {}, false};
   CellsReader reader(show, *table);
-  if (!reader.find_columns()) return out;
-  for (const auto& row : table->rows) {
-    if (performer) {
-      reader.read(row, *performer);
-    } else {
-      reader.read_unnamed(row);
-    }
-  }
-  out.cells = performer ? reader.finish() : reader.finish_unnamed(table->rows.size());
-  return out;
+  if (!reader.find_columns()) return {file, {}, false};
+  for (const auto& row : table->rows) reader.read(row);
+  return reader.finish();
 }
 
 }  // namespace footlight::config

@@ -142,6 +142,7 @@ std::string to_text(const Range& range, std::string_view unit) {
   const bool low = range.min > -1e300;
   const bool high = range.max < 1e300;
   const std::string tail = unit.empty() ? "" : " " + std::string(unit);
+  if (low && range.min == range.max) return plain(range.min) + tail;
   if (low && high) {
     return range.above_min ? "above " + plain(range.min) + ", at most " + plain(range.max) + tail
                            : plain(range.min) + " to " + plain(range.max) + tail;

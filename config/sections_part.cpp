@@ -62,7 +62,7 @@ Source read_source(ShowReading& show, MappingReader from) {
     return ImageSource{existing_file(from, "image", show.folder, files), read_picture(from)};
   }
   refuse_keys(from, {"frames", "fit", "threshold", "invert"}, "it goes with a video or an image");
-  const std::string file = from.has("cells") ? existing_file(from, "cells", show.folder, files) : std::string{};
+  const std::string file = from.has("cells") ? existing_file(from, "cells", show.folder, files) : "";
   return file.empty() ? CellsSource{} : read_cells_csv(show, file);
 }
 

@@ -155,7 +155,9 @@ const Listing& source_listing() {
       {
           {.key = "video", .type = Type::file, .doc = "A monochrome video, planned key frame by key frame."},
           {.key = "image", .type = Type::file, .doc = "One picture (PNG, JPEG, BMP, PBM, PGM), one formation."},
-          {.key = "cells", .type = Type::file, .doc = "A CSV file with everybody's cell, one formation."},
+          {.key = "cells",
+           .type = Type::file,
+           .doc = "A CSV file of cells, one formation: `performer,col,row`, or without names `col,row`."},
           {.key = "frames",
            .type = Type::frames,
            .doc = "First and last frame of the video, from 0, the last included; `100-` goes to the end.",

@@ -43,8 +43,8 @@ void read_looks(ShowReading& show, MappingReader looks);
 [[nodiscard]] std::optional<CellRange> read_cell_range(MappingReader& mapping, const Written& written,
                                                        const Grid& grid);
 
-/// CSV `performer,col,row` or `performer,cell`, or without the performers: a free cell for every performer. Errors with
-/// line and column.
+/// CSV `performer,col,row` or `performer,cell`: a free cell for every performer; without the column `performer` as many
+/// free cells as there are performers. Errors with line and column.
 [[nodiscard]] CellsSource read_cells_csv(ShowReading& show, const std::string& file);
 /// CSV id,name,call_name,group,cast,cover,radius,speed,wearable; only id is needed.
 void read_roster_csv(ShowReading& show, const std::string& file);
