@@ -24,7 +24,8 @@ std::optional<CueNumber> read_number(MappingReader& cue) {
   return number;
 }
 
-std::optional<SectionIndex> read_section_name(MappingReader& cue, const Show& show) {
+std::optional<SectionIndex> read_section_name(MappingReader& cue, const ShowReading& reading) {
+  const Show& show = reading.show();
   const auto written = cue.written("section");
   if (!written) return std::nullopt;
   std::vector<std::string> names;
@@ -32,19 +33,19 @@ std::optional<SectionIndex> read_section_name(MappingReader& cue, const Show& sh
     if (show.sections[s].name == written->text) return SectionIndex::of(s);
     names.push_back(show.sections[s].name);
   }
-  // Sections that could not be read are not known by name: no echo of their errors.
-  if (!cue.reading().diagnostics.has_errors() || !nearest(written->text, names).empty()) {
+  if (reading.has_all_sections) {  // otherwise it may be an echo of another error
     cue.error(*written, "no section has the name " + in_quotes(written->text),
               suggestion(written->text, names, "sections"));
   }
   return std::nullopt;
 }
 
-std::optional<Cue> read_cue(MappingReader& reader, const Show& show) {
+std::optional<Cue> read_cue(MappingReader& reader, const ShowReading& reading) {
+  const Show& show = reading.show();
   Cue out;
   out.position = reader.position();
   const auto number = read_number(reader);
-  const auto section = read_section_name(reader, show);
+  const auto section = read_section_name(reader, reading);
   const auto name = reader.text("name");
   out.continue_mode = static_cast<ContinueMode>(reader.choice("continue").value_or(0));
   out.pre_wait = seconds(reader.quantity("pre_wait").value_or(0));
@@ -109,7 +110,7 @@ void read_cues(ShowReading& show, MappingReader& root) {
   }
   std::map<CueNumber, Position> first_at;
   for (MappingReader& reader : root.mappings("cues")) {
-    auto cue = read_cue(reader, show.show());
+    auto cue = read_cue(reader, show);
     if (!cue) continue;
     const auto [first, is_new] = first_at.emplace(cue->number, cue->position);
     if (!is_new) {

@@ -234,6 +234,7 @@ std::vector<MappingReader::Item> MappingReader::items_of(std::string_view key, b
     }
   };
   if (e->value->kind == TextNode::Kind::sequence) {
+    if (f.required && e->value->items.empty()) error(key, "the list is empty", "at least one is needed");
     for (std::size_t i = 0; i < e->value->items.size(); ++i) take(e->value->items[i], element(path(key), i));
   } else if (scalars && e->value->kind == TextNode::Kind::scalar) {
     take(e->value, path(key));

@@ -41,9 +41,15 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest) continue;
     const int distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
+    if (distance < best_distance && distance < static_cast<int>(word.size())) {
       best = candidate;
       best_distance = distance;
+    }
+  }
+  for (std::size_t c = 0; best.empty() && c < candidates.size(); ++c) {  // a word cut short, or gone on with
+    const std::size_t shorter = std::min(word.size(), candidates[c].size());
+    if (shorter >= 3 && word.substr(0, shorter) == std::string_view(candidates[c]).substr(0, shorter)) {
+      best = candidates[c];
     }
   }
   return best;

@@ -171,7 +171,7 @@ class CellsReader {
                          std::to_string(next_) + " cells for " + std::to_string(cells_.size()) + " performers",
                          "one row for every performer");
     }
-    return {table_.file, std::move(cells_), !performer_column_};
+    return {table_.file, std::move(cells_), performer_column_.has_value()};
   }
 
  private:
@@ -275,9 +275,9 @@ void read_roster_csv(ShowReading& show, const std::string& file) {
 
 CellsSource read_cells_csv(ShowReading& show, const std::string& file) {
   const auto table = load_table(show, file, {"performer", "col", "row", "cell"});
-  if (!table || !show.has_stage || !show.has_performers) return {file, {}, false};
+  if (!table || !show.has_stage || !show.has_performers) return {file, {}, true};
   CellsReader reader(show, *table);
-  if (!reader.find_columns()) return {file, {}, false};
+  if (!reader.find_columns()) return {file, {}, true};
   for (const auto& row : table->rows) reader.read(row);
   return reader.finish();
 }

@@ -208,19 +208,13 @@ class RigReader {
   }
 
   void read_channels(MappingReader& reader, Node& node) {
-    const std::size_t errors = reader.has("channels") ? 0 : 1;
     std::size_t channels = 0;
-    bool wrong = errors > 0;
     for (auto& item : reader.items("channels")) {
-      const std::size_t before = channels;
       channels += item.scalar ? add_cells(reader, *item.scalar, node) : add_wearable(*item.mapping, node);
-      wrong = wrong || channels == before;
     }
     if (channels > kChannelsPerNode) {
       reader.error("channels", "the node has " + std::to_string(channels) + " channels",
                    "at most " + std::to_string(kChannelsPerNode) + "; give the others to another node");
-    } else if (channels == 0 && !wrong) {
-      reader.error("channels", "the node has no channels", "1 to " + std::to_string(kChannelsPerNode));
     }
   }
 

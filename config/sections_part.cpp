@@ -131,8 +131,10 @@ void read_sections(ShowReading& show, MappingReader& root) {
   std::vector<Section>& out = show.show().sections;
   std::map<std::string, int> lines;
   auto readers = root.mappings("sections");
+  show.has_all_sections = true;
   for (MappingReader& reader : readers) {
     auto section = read_section(show, reader);
+    show.has_all_sections = show.has_all_sections && section;
     if (!section) continue;
     const auto [first, is_new] = lines.emplace(section->name, section->position.line);
     if (!is_new) {
@@ -141,9 +143,6 @@ void read_sections(ShowReading& show, MappingReader& root) {
       continue;
     }
     out.push_back(std::move(*section));
-  }
-  if (root.has("sections") && readers.empty() && !root.reading().diagnostics.has_errors()) {
-    root.error("sections", "the list is empty", "a show has at least one section");
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Section& a, const Section& b) { return a.start_count < b.start_count; });

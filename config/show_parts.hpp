@@ -19,6 +19,7 @@ struct ShowReading {
   LoadedShow& loaded;
   bool has_stage = false;
   bool has_performers = false;
+  bool has_all_sections = false;  ///< every section is known by its name
 
   [[nodiscard]] Show& show() const { return loaded.show; }
 };

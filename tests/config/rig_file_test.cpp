@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/rig_file.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "config/device_profile.hpp"
+#include "tests/config/show_folder.hpp"
+
+namespace footlight::config {
+namespace {
+
+Show show_of(int columns, int rows) {
+  Show show;
+  show.stage.grid = Grid::make(GridKind::square, columns, rows, 1).value();
+  show.performers.resize(3);
+  show.performers[1].wearable = "W1";
+  show.performers[2].wearable = "W2";
+  return show;
+}
+
+/// Every cell that is not blocked and every wearable exactly once, addresses unique and in range, nodes in order.
+void expect_complete(const Rig& rig, const Show& show, bool with_wearables) {
+  std::set<CellIndex> cells;
+  std::set<PerformerIndex> wearables;
+  std::set<std::pair<BusIndex, int>> addresses;
+  for (const Node& node : rig.nodes) {
+    EXPECT_GE(node.channels.size(), 1U);
+    EXPECT_LE(node.channels.size(), 32U);
+    EXPECT_GE(node.address, 1);
+    EXPECT_LE(node.address, last_address(rig.buses[node.bus.at()].kind));
+    EXPECT_TRUE(addresses.emplace(node.bus, node.address).second);
+    for (const Channel& channel : node.channels) {
+      if (channel.kind == Channel::Kind::cell) {
+        EXPECT_TRUE(cells.insert(channel.cell).second);
+      } else {
+        EXPECT_TRUE(wearables.insert(channel.performer).second);
+      }
+    }
+  }
+  EXPECT_EQ(cells.size(), static_cast<std::size_t>(show.stage.grid.size()) - show.stage.blocked.size());
+  for (const CellIndex blocked : show.stage.blocked) EXPECT_FALSE(cells.contains(blocked));
+  EXPECT_EQ(wearables.size(), with_wearables ? 2U : 0U);
+  EXPECT_TRUE(std::is_sorted(rig.nodes.begin(), rig.nodes.end(), [](const Node& a, const Node& b) {
+    return std::pair(a.bus, a.address) < std::pair(b.bus, b.address);
+  }));
+}
+
+std::vector<int> nodes_of_buses(const Rig& rig) {
+  std::vector<int> out(rig.buses.size());
+  for (const Node& node : rig.nodes) ++out[node.bus.at()];
+  return out;
+}
+
+class RigFile : public testing::Test {
+ protected:
+  Rig read(const std::string& text) {
+    folder_.write("rig.yaml", text);
+    return read_rig(folder_.path("rig.yaml").string(), show_, true, diagnostics_, files_);
+  }
+  Rig right(const std::string& text) {
+    Rig rig = read(text);
+    EXPECT_FALSE(diagnostics_.has_errors()) << diagnostics_.to_text();
+    return rig;
+  }
+  std::string messages(const std::string& text) {
+    (void)read(text);
+    return folder_.without_folder(diagnostics_.to_text());
+  }
+
+  ShowFolder folder_;
+  Show show_ = show_of(8, 6);
+  Diagnostics diagnostics_;
+  std::vector<std::string> files_;
+};
+
+constexpr const char* kBuses =
+    "rig: 1\n"
+    "buses:\n"
+    "  - {name: can-a, url: \"can://can0\"}\n"
+    "  - {name: rtu-a, kind: modbus-rtu, url: \"sim://rtu\", bits_per_second: 57600, profile: footlight-marker}\n"
+    "  - {name: ser, url: \"serial:///dev/ttyUSB0\"}\n";
+
+TEST_F(RigFile, ReadsBusesAndNodes) {
+  show_.stage.blocked = {CellIndex(0)};
+  const Rig rig = right(std::string(kBuses) +
+                        "nodes:\n"
+                        "  - {bus: ser, address: 9, channels: [A1:B2, H6, {wearable: W2}]}\n"
+                        "  - {name: edge, bus: can-a, address: 2, channels: C3}\n"
+                        "floor: {buses: [can-a, ser], channels_per_node: 8}\n");
+  ASSERT_EQ(rig.buses.size(), 3U);
+  EXPECT_EQ(rig.buses[0].kind, BusKind::can);
+  EXPECT_EQ(rig.buses[0].bits_per_second, 500'000);
+  EXPECT_FALSE(rig.buses[0].profile.has_value());
+  EXPECT_EQ(rig.buses[1].bits_per_second, 57'600);
+  EXPECT_EQ(rig.buses[1].profile, footlight_marker_profile());
+  EXPECT_EQ(rig.buses[2].bits_per_second, 115'200);
+  const auto nine = std::find_if(rig.nodes.begin(), rig.nodes.end(),
+                                 [](const Node& n) { return n.address == 9 && n.bus == BusIndex(2); });
+  ASSERT_NE(nine, rig.nodes.end());
+  EXPECT_EQ(nine->name, "ser-9");
+  ASSERT_EQ(nine->channels.size(), 5U) << "the blocked cell of the range has no lamp";
+  EXPECT_EQ(nine->channels[0].cell, show_.stage.grid.index({1, 0}));
+  EXPECT_EQ(nine->channels[1].cell, show_.stage.grid.index({0, 1}));
+  EXPECT_EQ(nine->channels[4].performer, PerformerIndex(2));
+  expect_complete(rig, show_, true);
+  EXPECT_TRUE(diagnostics_.empty());
+}
+
+TEST_F(RigFile, LaysAWholeFloorInAFewLines) {
+  show_ = show_of(84, 48);
+  const Rig rig = right(std::string(kBuses) + "floor: {buses: [can-a, rtu-a, ser], wearables: false}\n");
+  EXPECT_EQ(rig.nodes.size(), 126U);
+  EXPECT_EQ(nodes_of_buses(rig), (std::vector<int>{87, 20, 19}));
+  expect_complete(rig, show_, false);
+}
+
+TEST_F(RigFile, RefusesAFloorThatItsBusesDoNotCarry) {
+  show_ = show_of(84, 48);
+  EXPECT_EQ(
+      messages(std::string(kBuses) + "floor: {buses: [rtu-a, ser], wearables: false}\n"),
+      "rig.yaml:6:16: error: floor.buses: 4032 lamps need 126 nodes of 32 channels, and these buses carry 56 (more "
+      "buses, or a larger nodes_per_bus)\n");
+}
+
+TEST_F(RigFile, RefusesWrongNodes) {
+  std::string channels;
+  for (int row = 1; row <= 4; ++row) channels += "A" + std::to_string(row) + ":H" + std::to_string(row) + ", ";
+  EXPECT_EQ(messages(std::string(kBuses) +
+                     "nodes:\n"
+                     "  - {bus: can-a, address: 1, channels: [" +
+                     channels +
+                     "A5]}\n"
+                     "  - {bus: can-a, address: 1, channels: [B5]}\n"
+                     "  - {bus: can-a, address: 127, channels: [C5]}\n"
+                     "  - {bus: can-b, address: 4, channels: [D5]}\n"
+                     "  - {bus: ser, address: 5, channels: [A1, I1, {wearable: W3}, {wearable: W1}, {wearable: W1}]}\n"
+                     "  - {bus: ser, address: 0, channels: []}\n"),
+            "rig.yaml:7:40: error: nodes[0].channels: the node has 33 channels (at most 32; give the others to another "
+            "node)\n"
+            "rig.yaml:8:27: error: nodes[1].address: a second node has the address 1 on the bus \"can-a\" (the first "
+            "stands in line 7)\n"
+            "rig.yaml:9:27: error: nodes[2].address: the address 127 is out of range (can: 1 to 126)\n"
+            "rig.yaml:10:11: error: nodes[3].bus: no bus has the name \"can-b\" (did you mean \"can-a\"?)\n"
+            "rig.yaml:11:39: error: nodes[4].channels[0]: the cell A1 is given a second lamp (the first stands in line "
+            "7)\n"
+            "rig.yaml:11:43: error: nodes[4].channels[1]: the cell I1 is off the grid (A1 to H6)\n"
+            "rig.yaml:11:58: error: nodes[4].channels[2].wearable: nobody wears \"W3\" (did you mean \"W1\"?)\n"
+            "rig.yaml:11:90: error: nodes[4].channels[4].wearable: the wearable \"W1\" is given a second channel (the "
+            "first stands in line 11)\n"
+            "rig.yaml:12:25: error: nodes[5].address: \"0\" is out of range (1 to 254)\n"
+            "rig.yaml:12:38: error: nodes[5].channels: the list is empty (at least one is needed)\n");
+}
+
+TEST_F(RigFile, RefusesWrongBuses) {
+  EXPECT_EQ(
+      messages("rig: 1\n"
+               "buses:\n"
+               "  - {name: a, kind: can, url: \"serial:///dev/ttyS0\"}\n"
+               "  - {name: a, url: \"sim://can\", bits_per_second: 2000000}\n"
+               "  - {name: c, url: \"http://x\"}\n"
+               "  - {name: d, kind: can, url: \"can://\"}\n"
+               "  - {name: e, url: \"sim://rtu\", profile: nosuch}\n"
+               "  - {name: f, url: \"sim://can\", profile: footlight-marker}\n"),
+      "rig.yaml:3:31: error: buses[0].url: \"serial:///dev/ttyS0\" is the URL of a serial bus, and this one is can "
+      "(can://can0 or sim://can)\n"
+      "rig.yaml:4:12: error: buses[1].name: a second bus has the name \"a\" (names of buses are unique)\n"
+      "rig.yaml:4:50: error: buses[1].bits_per_second: \"2000000\" is out of range (can: 10000 to 1000000 "
+      "bit/s)\n"
+      "rig.yaml:5:20: error: buses[2].url: \"http://x\" is not the URL of a bus (serial:///dev/..., rtu:///dev/..., "
+      "tcp://host:502, can://can0, sim://serial, sim://rtu, sim://tcp, sim://can)\n"
+      "rig.yaml:6:31: error: buses[3].url: \"can://\" is not the URL of a bus (can://can0 or sim://can)\n"
+      "rig.yaml:7:42: error: buses[4].profile: there is no device profile \"nosuch\" (a shipped one, as "
+      "footlight-marker, or a .yaml file beside the rig)\n"
+      "rig.yaml:8:33: error: buses[5].profile: the key has no meaning here (only Modbus devices have a "
+      "profile)\n");
+}
+
+TEST_F(RigFile, WarnsOfCellsWithoutLamp) {
+  EXPECT_EQ(messages(std::string(kBuses) + "nodes: [{bus: ser, address: 1, channels: [A1:D6]}]\n"),
+            "rig.yaml: warning: 24 cells have no lamp, the first is E1 (people find their place there without light; "
+            "floor: lays what is left)\n");
+}
+
+TEST_F(RigFile, TakesAProfileOfItsOwn) {
+  folder_.write("lamp.yaml",
+                "profile: 1\nname: lamp\nlook_register: 100\nlooks_per_register: 1\npreload_sequence: false\n");
+  const Rig rig = right("rig: 1\nbuses: [{name: a, url: \"tcp://lamp:502\", profile: lamp.yaml}]\nfloor: {buses: a}\n");
+  const ModbusProfile& profile = rig.buses[0].profile.value();
+  EXPECT_EQ(profile.name, "lamp");
+  EXPECT_EQ(profile.look_register, 100);
+  EXPECT_EQ(profile.looks_per_register, 1);
+  EXPECT_FALSE(profile.has_preload_sequence);
+  EXPECT_FALSE(profile.latch_register.has_value());
+  EXPECT_EQ(files_, (std::vector<std::string>{folder_.path("lamp.yaml").string()}));
+}
+
+TEST(DeviceProfile, OfOurMarkerIsTheShippedOne) {
+  const auto file = find_profile("footlight-marker", "/");
+  ASSERT_TRUE(file.has_value());
+  Diagnostics diagnostics;
+  EXPECT_EQ(read_profile(*file, diagnostics), footlight_marker_profile()) << diagnostics.to_text();
+}
+
+TEST(DeviceProfile, IsNotFoundOutsideOfItsFolders) {
+  EXPECT_EQ(find_profile("../profiles/footlight-marker", "/"), std::nullopt);
+  EXPECT_EQ(find_profile("none.yaml", "/"), std::nullopt);
+}
+
+TEST(SimulatedRig, HasOneBusOfEachKindForASmallStage) {
+  const Show show = show_of(8, 6);
+  const Rig rig = make_simulated_rig(show);
+  ASSERT_EQ(rig.buses.size(), 3U);
+  EXPECT_EQ(rig.buses[0].url, "sim://can");
+  EXPECT_EQ(rig.buses[1].url, "sim://rtu");
+  EXPECT_EQ(rig.buses[2].url, "sim://serial");
+  for (const int nodes : nodes_of_buses(rig)) EXPECT_GE(nodes, 1);
+  expect_complete(rig, show, true);
+}
+
+TEST(SimulatedRig, HasAsManyBusesAsCarryWell) {
+  for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 2}, {84, 48}, {144, 90}, {400, 250}}) {
+    Show show = show_of(columns, rows);
+    if (columns > 10) show.stage.blocked = {CellIndex(3), CellIndex(17)};
+    const Rig rig = make_simulated_rig(show);
+    EXPECT_EQ(rig.buses.size() % 3, 0U);
+    const auto nodes = nodes_of_buses(rig);
+    for (std::size_t b = 0; b < nodes.size(); ++b) EXPECT_LE(nodes[b], nodes_that_carry_well(rig.buses[b].kind));
+    expect_complete(rig, show, true);
+  }
+}
+
+}  // namespace
+}  // namespace footlight::config
