@@ -326,8 +326,8 @@ TEST_F(ShowFile, KnowsWhichSectionsThereAre) {
                       "cues: [{number: \"1\", section: grwth}, {number: \"2\", section: x, continue: auto}]\n"),
             "show.yaml:6:31: error: cues[0].section: no section has the name \"grwth\" (did you mean \"growth\"?)\n"
             "show.yaml:6:62: error: cues[1].section: no section has the name \"x\" (sections: growth)\n"
-            "show.yaml:6:75: error: cues[1].continue: \"auto\" is not one of the choices (choices: manual, "
-            "auto-continue, auto-follow)\n");
+            "show.yaml:6:75: error: cues[1].continue: \"auto\" is not one of the choices (did you mean "
+            "\"auto-continue\"?)\n");
   EXPECT_EQ(errors_with("cues: [{number: \"2\", section: x}]\n"),
             "show.yaml:6:31: error: cues[0].section: no section has the name \"x\" (sections: a)\n");
 }
