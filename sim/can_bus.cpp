@@ -210,9 +210,11 @@ void CanBus::draw_losses(std::string& note) {
     return;
   }
   const int only = addressee();
-  for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-    if ((only != kController && only != static_cast<int>(slot)) || !nodes_[slot]->powered()) continue;
-    missed_[slot] = misses(nodes_[slot]->name(), note);
+  if (only == kNobody) return;
+  const auto first = only == kController ? 0 : static_cast<std::size_t>(only);
+  const auto end = only == kController ? nodes_.size() : first + 1;
+  for (std::size_t slot = first; slot < end; ++slot) {
+    missed_[slot] = nodes_[slot]->powered() && misses(nodes_[slot]->name(), note);
   }
 }
 

@@ -71,7 +71,9 @@ std::size_t reply_pdu_size(const ModbusRequest& request) {
 }
 
 std::vector<std::uint8_t> rtu_frame(std::uint8_t unit, std::span<const std::uint8_t> pdu) {
-  std::vector<std::uint8_t> frame{unit};
+  std::vector<std::uint8_t> frame;
+  frame.reserve(pdu.size() + 3);
+  frame.push_back(unit);
   frame.insert(frame.end(), pdu.begin(), pdu.end());
   const std::uint16_t check = crc16_modbus(frame);
   frame.push_back(static_cast<std::uint8_t>(check & 0xFFU));

@@ -27,8 +27,8 @@ Duration RtuBus::silence(const Bus& bus) {
   return bit_time(77, 2 * std::int64_t{bus.bits_per_second});  // 3.5 x 11 bits
 }
 
-RtuBus::RtuBus(const Bus& bus, Surroundings surroundings)
-    : SimulatedBus(bus, std::move(surroundings)),
+RtuBus::RtuBus(const Bus& bus, const Surroundings& surroundings)
+    : SimulatedBus(bus, surroundings),
       silence_(silence(bus)),
       line_(bus_, kBitsPerCharacter, silence_, around_, use_, *this) {}
 

@@ -25,7 +25,7 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   static constexpr Duration kReplyTimeout = milliseconds(50);  ///< from the last bit of the request
   static constexpr Duration kBroadcastGap = milliseconds(2);   ///< from the last bit, until the port is free
 
-  RtuBus(const Bus& bus, Surroundings surroundings);
+  RtuBus(const Bus& bus, const Surroundings& surroundings);
 
   std::size_t add(std::unique_ptr<SimulatedNode> node) override;
   void power_off(std::size_t slot) override;

@@ -27,8 +27,8 @@ std::size_t first_frame(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-SerialBus::SerialBus(const Bus& bus, Surroundings surroundings)
-    : SimulatedBus(bus, std::move(surroundings)),
+SerialBus::SerialBus(const Bus& bus, const Surroundings& surroundings)
+    : SimulatedBus(bus, surroundings),
       line_(bus_, kBitsPerCharacter, Duration{}, around_, use_, *this),
       sent_until_(around_.world.now()) {}
 

@@ -18,7 +18,7 @@ class SerialBus final : public SimulatedBus, public drivers::ByteStream, private
   /// Bytes that the port takes before it is busy.
   static constexpr std::size_t kBuffer = 4096;
 
-  SerialBus(const Bus& bus, Surroundings surroundings);
+  SerialBus(const Bus& bus, const Surroundings& surroundings);
 
   std::size_t add(std::unique_ptr<SimulatedNode> node) override;
   void power_off(std::size_t slot) override;

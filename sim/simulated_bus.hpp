@@ -36,7 +36,7 @@ inline constexpr int kController = -1;
 /// A wire with its nodes. A node's slot is its place in the order of addition.
 class SimulatedBus : public Actor {
  public:
-  SimulatedBus(const Bus& bus, Surroundings surroundings) : bus_(bus), around_(std::move(surroundings)) {}
+  SimulatedBus(const Bus& bus, const Surroundings& surroundings) : bus_(bus), around_(surroundings) {}
 
   /// @return the slot
   virtual std::size_t add(std::unique_ptr<SimulatedNode> node) = 0;

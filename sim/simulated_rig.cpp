@@ -25,16 +25,16 @@ constexpr std::uint64_t kRebootStream = 1'000'001;
 constexpr std::uint64_t kFaultStream = 0;
 constexpr std::uint64_t kTimingStream = 1;
 
-std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, Surroundings surroundings) {
+std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surroundings) {
   switch (bus.kind) {
     case BusKind::serial:
-      return std::make_unique<SerialBus>(bus, std::move(surroundings));
+      return std::make_unique<SerialBus>(bus, surroundings);
     case BusKind::modbus_rtu:
-      return std::make_unique<RtuBus>(bus, std::move(surroundings));
+      return std::make_unique<RtuBus>(bus, surroundings);
     case BusKind::modbus_tcp:
-      return std::make_unique<TcpBus>(bus, std::move(surroundings));
+      return std::make_unique<TcpBus>(bus, surroundings);
     case BusKind::can:
-      return std::make_unique<CanBus>(bus, std::move(surroundings));
+      return std::make_unique<CanBus>(bus, surroundings);
   }
   FL_CHECK(false);
 }

@@ -17,7 +17,7 @@ class TcpBus final : public SimulatedBus, public drivers::ModbusPort {
  public:
   static constexpr Duration kReplyTimeout = milliseconds(50);
 
-  TcpBus(const Bus& bus, Surroundings surroundings) : SimulatedBus(bus, std::move(surroundings)) {}
+  TcpBus(const Bus& bus, const Surroundings& surroundings) : SimulatedBus(bus, surroundings) {}
 
   std::size_t add(std::unique_ptr<SimulatedNode> node) override;
   void power_off(std::size_t slot) override;

@@ -17,7 +17,7 @@ constexpr std::uint8_t kWriteOne = 0x06;
 constexpr std::uint8_t kWriteSeveral = 0x10;
 constexpr int kStatusRegisters = 6;
 constexpr int kMostRead = 125;
-constexpr int kMostWritten = 123;
+constexpr std::size_t kMostWritten = 123;
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]);
@@ -60,9 +60,11 @@ std::vector<std::uint8_t> ModbusMarker::receive_rtu(std::span<const std::uint8_t
     ++dropped_;
     return {};
   }
-  auto pdu = answer(body.subspan(1), now);
+  const auto pdu = answer(body.subspan(1), now);
   if (frame[0] == 0) return {};
-  std::vector<std::uint8_t> reply{address_};
+  std::vector<std::uint8_t> reply;
+  reply.reserve(pdu.size() + 3);
+  reply.push_back(address_);
   reply.insert(reply.end(), pdu.begin(), pdu.end());
   const std::uint16_t reply_check = crc16_modbus(reply);
   reply.push_back(static_cast<std::uint8_t>(reply_check & 0xFFU));
@@ -99,12 +101,11 @@ std::vector<std::uint8_t> ModbusMarker::answer(std::span<const std::uint8_t> req
     if (request.size() != 5) return exception(function, kIllegalValue);
     values.push_back(word_at(request, 3));
   } else {
-    const int count = word_at(request, 3);
-    if (count < 1 || count > kMostWritten || request.size() != 6U + 2U * static_cast<std::size_t>(count) ||
-        request[5] != 2 * count) {
+    const std::size_t count = word_at(request, 3);
+    if (count < 1 || count > kMostWritten || request.size() != 6 + 2 * count || request[5] != 2 * count) {
       return exception(function, kIllegalValue);
     }
-    for (int i = 0; i < count; ++i) values.push_back(word_at(request, 6U + 2U * static_cast<std::size_t>(i)));
+    for (std::size_t i = 0; i < count; ++i) values.push_back(word_at(request, 6 + 2 * i));
   }
   if (const std::uint8_t code = write(first, values, now); code != 0) return exception(function, code);
   return {request.begin(), request.begin() + 5};

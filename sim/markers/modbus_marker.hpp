@@ -32,7 +32,7 @@ class ModbusMarker {
   using Words = std::vector<std::uint16_t>;
 
   std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request, Instant now);
-  std::vector<std::uint8_t> read(std::span<const std::uint8_t> request, Instant now) const;
+  [[nodiscard]] std::vector<std::uint8_t> read(std::span<const std::uint8_t> request, Instant now) const;
   /// @return exception code, 0 when done
   std::uint8_t write(int first, const Words& values, Instant now);
   std::uint8_t write_preload(const Words& values, Instant now);
