@@ -194,28 +194,30 @@ class SlabJudge {
     }
     const double limit = least_distance_m(plan_, a, b) - kClearanceTolerance_m;
     if (limit <= 0 || nearest.squared_m2 >= limit * limit) return;
-    // Too close: counted once for each stretch between neighbouring mark instants, whoever's marks they are.
-    auto cut = std::upper_bound(cuts_.begin(), cuts_.end(), piece.start);
-    Piece part = piece;
-    while (part.start < piece.end) {
-      part.end = std::min(piece.end, cut == cuts_.end() ? piece.end : *cut++);
-      part.d0 = piece.at(part.start);
-      part.d1 = piece.at(part.end);
-      judge_part(a, b, part, limit, step_start, step_end);
-      part.start = part.end;
-    }
+    count_too_close(a, b, piece, nearest, limit, step_start, step_end);
   }
 
-  void judge_part(std::uint32_t a, std::uint32_t b, const Piece& part, double limit_m, Instant step_start,
-                  Instant step_end) {
-    const Nearest nearest = nearest_to_origin(part.d0, part.d1);
-    if (nearest.squared_m2 >= limit_m * limit_m) return;
-    const Instant at = instant_in(part.start, part.end, nearest.share);
-    // The pair is seen in several steps; the one with the closest approach counts it, on a border the later one.
+  /// The pair is seen in several steps; the one with the closest approach counts it, on a border the later one.
+  void count_too_close(std::uint32_t a, std::uint32_t b, const Piece& piece, const Nearest& nearest, double limit_m,
+                       Instant step_start, Instant step_end) {
+    const Instant at = instant_in(piece.start, piece.end, nearest.share);
     if (at < step_start || at > step_end || (at == step_end && step_end != end_)) return;
-    ++out_.too_close;
+    out_.too_close += stretches_too_close(piece, at, limit_m);
     out_.first.push_back({std::sqrt(nearest.squared_m2), at, a, b});
     if (out_.first.size() >= 4 * keep_ + 64) trim();
+  }
+
+  /// How many stretches between neighbouring mark instants, whoever's marks they are, hold a moment that is too near.
+  /// The distance falls until `at` and rises after it, so these are neighbours, found by bisection on both sides.
+  [[nodiscard]] std::uint64_t stretches_too_close(const Piece& piece, Instant at, double limit_m) const {
+    const auto near = [&](Instant time) { return squared_length(piece.at(time)) < limit_m * limit_m; };
+    const auto first = std::upper_bound(cuts_.begin(), cuts_.end(), piece.start);  // cuts inside of the piece
+    const auto last = std::lower_bound(first, cuts_.end(), piece.end);
+    const auto middle = std::lower_bound(first, last, at);
+    const auto first_near = std::partition_point(first, middle, [&](Instant cut) { return !near(cut); });
+    const auto last_near = std::partition_point(middle, last, near);
+    // Where the closest approach is a cut itself, the stretches on both of its sides hold it.
+    return 1 + static_cast<std::uint64_t>(last_near - first_near);
   }
   void trim() {
     const auto nth = out_.first.begin() + static_cast<std::ptrdiff_t>(std::min(keep_, out_.first.size()));

@@ -31,7 +31,7 @@ struct NearestPair {
 struct Approaches {
   NearestPair nearest;             ///< of all pairs, exact; at an infinite distance when there are not two people
   std::uint64_t too_close = 0;     ///< pairs and stretches between neighbouring mark instants
-  std::vector<NearestPair> first;  ///< the first `keep` of them by time, then people
+  std::vector<NearestPair> first;  ///< pairs too close on a straight stretch of both; the first `keep` by time
 };
 
 /// Closest approaches in [start, end], in closed form. Stretches of time are judged in parallel; the result does not
