@@ -183,7 +183,7 @@ Placement place_picture(const PlacementTask& task) {
     for (int round = 0; round < 6 && scale > smallest; ++round) {
       const auto shares = cell_shares(picture, task.stage->grid, map_of(scale, frame_middle, floor_middle));
       const double filled = usable_cells(shares, *task.usable) / task.people;
-      if (filled <= 0 || filled > 0.999) break;
+      if (filled <= 0 || std::abs(filled - 1) < 0.002) break;
       scale *= std::sqrt(filled);
     }
     if (scale < smallest) {

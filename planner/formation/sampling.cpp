@@ -45,10 +45,9 @@ class FilmClock {
     const Instant instant = at_frame(frame);
     return {frame, tempo_.count_at(instant), instant};
   }
-  /// The whole count next to a frame; the one before where the one after lies beyond `latest`.
+  /// The first whole count that shows a frame; the last one before `latest` where it lies beyond.
   [[nodiscard]] KeyFrame key_on_count(int frame, Instant earliest, Instant latest) const {
-    const double exact = tempo_.count_at(at_frame(frame));
-    double count = std::round(exact);
+    double count = std::ceil(tempo_.count_at(at_frame(frame)) - 1e-6);
     if (tempo_.at(count) > latest) count = std::floor(tempo_.count_at(latest) + 1e-6);
     if (tempo_.at(count) < earliest) count = std::ceil(tempo_.count_at(earliest) - 1e-6);
     return key_at_count(count);
@@ -96,7 +95,7 @@ double show_fps(const Film& film, const FilmTime& time) {
 std::vector<KeyFrame> sample(const Film& film, const FilmTime& time, const Sampling& sampling, double shortest_s) {
   FL_CHECK(film.frames.size() >= 2 && time.duration_counts > 0);
   const FilmClock clock(film, time);
-  const Duration shortest = std::min(seconds(shortest_s), sampling.interval);
+  const Duration shortest = std::max(std::min(seconds(shortest_s), sampling.interval), milliseconds(1));
   const int last_frame = static_cast<int>(film.frames.size()) - 1;
   const KeyFrame end{last_frame, time.start_count + time.duration_counts,
                      time.tempo->at(time.start_count + time.duration_counts)};

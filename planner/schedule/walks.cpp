@@ -14,7 +14,9 @@ namespace footlight::planner {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
-constexpr int kRounds = 12;
+constexpr int kRounds = 6;
+/// Who passes within so many pitches of a conflict takes part in solving it.
+constexpr double kNeighbourhood = 4;
 /// How far from her present target somebody may be sent to solve a conflict, pitches.
 constexpr double kDetour = 3.2;
 /// Above this number of allowed pairs a blocked stage is not matched exactly at once.
@@ -82,42 +84,69 @@ class Settler {
     return std::move(best->target_of);
   }
 
-  /// Allowed pairs around the present ones.
-  [[nodiscard]] std::vector<Arc> arcs_around(const std::vector<std::uint32_t>& target_of) const {
-    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(grid_.size()), kNone);
-    for (std::uint32_t j = 0; j < targets_.size(); ++j) at_cell[task_.to[j].at()] = j;
-    std::vector<Arc> arcs;
+  /// People whose walks pass near a conflict, ascending: they may be matched again among themselves.
+  [[nodiscard]] std::vector<std::uint32_t> people_near(const std::vector<NearPair>& close,
+                                                       const std::vector<std::uint32_t>& target_of) const {
+    std::vector<char> marked(static_cast<std::size_t>(grid_.size()), 0);
+    const auto mark = [&](CellIndex cell) {
+      for (const CellIndex near : grid_.within(grid_.centre(cell), kNeighbourhood * grid_.pitch_m())) {
+        marked[near.at()] = 1;
+      }
+    };
+    for (const NearPair& pair : close) {
+      for (const std::uint32_t i : {pair.a, pair.b}) {
+        mark(task_.from[i]);
+        mark(task_.to[target_of[i]]);
+      }
+    }
+    std::vector<std::uint32_t> people;
     for (std::uint32_t i = 0; i < sources_.size(); ++i) {
+      if (marked[task_.from[i].at()] != 0 || marked[task_.to[target_of[i]].at()] != 0) people.push_back(i);
+    }
+    return people;
+  }
+
+  using Penalties = std::map<std::pair<std::uint32_t, std::uint32_t>, double>;
+
+  /// Matches `people` to their own targets anew, each among the targets around her present one.
+  void match_again(const std::vector<std::uint32_t>& people, const Penalties& penalties,
+                   std::vector<std::uint32_t>& target_of) const {
+    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(grid_.size()), kNone);
+    for (std::uint32_t n = 0; n < people.size(); ++n) at_cell[task_.to[target_of[people[n]]].at()] = n;
+    std::vector<Arc> arcs;
+    for (std::uint32_t n = 0; n < people.size(); ++n) {
+      const std::uint32_t i = people[n];
       const std::size_t first = arcs.size();
       for (const CellIndex cell : grid_.within(targets_[target_of[i]], kDetour * grid_.pitch_m())) {
-        const std::uint32_t j = at_cell[cell.at()];
-        if (j == kNone || (j != target_of[i] && !may_walk(sources_[i], targets_[j]))) continue;
-        arcs.push_back({i, j, squared_length(sources_[i] - targets_[j])});
+        const std::uint32_t m = at_cell[cell.at()];
+        if (m == kNone) continue;
+        const std::uint32_t j = target_of[people[m]];
+        if (m != n && !may_walk(sources_[i], targets_[j])) continue;
+        const auto penalty = penalties.find({i, j});
+        const double toll = penalty == penalties.end() ? 0 : penalty->second;
+        arcs.push_back({n, m, squared_length(sources_[i] - targets_[j]) + toll});
       }
       std::sort(arcs.begin() + static_cast<std::ptrdiff_t>(first), arcs.end(),
                 [](const Arc& a, const Arc& b) { return a.target < b.target; });
     }
-    return arcs;
+    const auto best = assign_sparse(static_cast<std::uint32_t>(people.size()), arcs);
+    if (!best) return;
+    std::vector<std::uint32_t> targets;
+    for (const std::uint32_t i : people) targets.push_back(target_of[i]);
+    for (std::size_t n = 0; n < people.size(); ++n) target_of[people[n]] = targets[best->target_of[n]];
   }
 
   void resolve(Leg& leg, std::vector<NearPair> close) const {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, double> penalty;
+    Penalties penalties;
     std::vector<std::uint32_t> trial = leg.target_of;
     name_conflicts(leg, close);
     const double toll = 2 * grid_.pitch_m() * grid_.pitch_m();
     for (int round = 0; round < kRounds && !leg.conflicts.empty(); ++round) {
       for (const NearPair& pair : close) {
-        penalty[{pair.a, trial[pair.a]}] += toll;
-        penalty[{pair.b, trial[pair.b]}] += toll;
+        penalties[{pair.a, trial[pair.a]}] += toll;
+        penalties[{pair.b, trial[pair.b]}] += toll;
       }
-      std::vector<Arc> arcs = arcs_around(trial);
-      for (Arc& arc : arcs) {
-        const auto found = penalty.find({arc.source, arc.target});
-        if (found != penalty.end()) arc.cost += found->second;
-      }
-      auto best = assign_sparse(static_cast<std::uint32_t>(sources_.size()), arcs);
-      if (!best) return;
-      trial = std::move(best->target_of);
+      match_again(people_near(close, trial), penalties, trial);
       const int exchanged = swap_conflicts(trial);
       close = close_pairs(trial);
       if (close.size() >= leg.conflicts.size()) continue;

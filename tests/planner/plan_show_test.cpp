@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/plan_show.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <tbb/global_control.h>
+
+#include "core/rng.hpp"
+#include "planner/validate.hpp"
+#include "tests/support/films.hpp"
+
+namespace footlight::planner {
+namespace {
+
+using Films = std::vector<std::optional<Film>>;
+
+Show show_with(int people, GridKind kind = GridKind::square, int columns = 30, int rows = 20) {
+  Show show;
+  show.file = "show.yaml";
+  show.title = "Test";
+  show.stage.grid = *Grid::make(kind, columns, rows, 1.0);
+  for (int p = 0; p < people; ++p) {
+    Performer performer;
+    performer.id = performer.name = std::to_string(p + 1);
+    show.performers.push_back(performer);
+  }
+  return show;
+}
+
+std::vector<CellIndex> cells_in(const Grid& grid, const char* range) {
+  const CellRange r = *parse_cell_range(range);
+  std::vector<CellIndex> out;
+  for (int row = r.first.row; row <= r.last.row; ++row) {
+    for (int column = r.first.column; column <= r.last.column; ++column) out.push_back(grid.index({column, row}));
+  }
+  return out;
+}
+
+Section section_of(const char* name, Source from, double start, double duration, double hold, int line) {
+  Section section;
+  section.name = name;
+  section.from = std::move(from);
+  section.start_count = start;
+  section.duration_counts = duration;
+  section.hold_counts = hold;
+  section.position = {"show.yaml", line, 5};
+  return section;
+}
+
+VideoSource video() { return {"film.mp4", 0, std::nullopt, {}}; }
+
+/// A disc that grows from nothing and then wanders.
+Film growing_film() {
+  return tests::film_of(
+      60, [](int f) { return f == 0 ? Mask(80, 60) : tests::disc(80, 60, 30 + f / 3.0, 30, std::min(f, 30) * 0.6); });
+}
+
+Show growing_show(int people, GridKind kind = GridKind::square) {
+  Show show = show_with(people, kind);
+  show.stage.reserve = cells_in(show.stage.grid, "A1:D20");
+  show.sections.push_back(section_of("growth", video(), 1, 120, 4, 31));
+  return show;
+}
+
+void expect_sound(const Planned& planned, const Show& show) {
+  EXPECT_TRUE(planned.plan.valid) << testing::PrintToString(planned.refusal);
+  EXPECT_TRUE(planned.refusal.empty());
+  EXPECT_EQ(planned.plan.tracks.size(), show.performers.size());
+  for (const Formation& formation : planned.plan.formations) {
+    EXPECT_EQ(std::set<CellIndex>(formation.cells.begin(), formation.cells.end()).size(), show.performers.size());
+  }
+}
+
+TEST(PlanShow, GrowsAPictureOutOfTheReserveOnEveryGrid) {
+  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
+    const Show show = growing_show(70, kind);
+    const auto planned = plan_show(show, {growing_film()});
+    ASSERT_TRUE(planned) << planned.error().message;
+    expect_sound(*planned, show);
+    EXPECT_EQ(planned->plan.formations.front().in_picture, 0);
+    EXPECT_EQ(planned->plan.formations.front().id, "growth/1");
+    EXPECT_GT(planned->plan.formations.back().in_picture, 60);
+    EXPECT_EQ(planned->plan.tracks[0].front().time, kStart);
+    EXPECT_EQ(planned->plan.tracks[0].back().time, show.tempo.at(125));
+    EXPECT_EQ(planned->plan.transitions.size() + 1, planned->plan.formations.size());
+  }
+}
+
+TEST(PlanShow, IsTheSameForAnyNumberOfThreads) {
+  const Show show = growing_show(70);
+  std::vector<Plan> plans;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    plans.push_back(plan_show(show, {growing_film()})->plan);
+  }
+  EXPECT_EQ(plans[0], plans[1]);
+  EXPECT_EQ(plans[0], plans[2]);
+}
+
+TEST(PlanShow, KeepsOffBlockedCellsAndGoesAroundThem) {
+  Show show = growing_show(50);
+  show.stage.blocked = cells_in(show.stage.grid, "N6:O15");
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_TRUE(planned) << planned.error().message;
+  expect_sound(*planned, show);
+}
+
+TEST(PlanShow, AnyFilmIsValidOrTheDrawingGivesWay) {
+  rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    Show show = show_with(1 + static_cast<int>(rng.below(60)), static_cast<GridKind>(rng.below(3)), 16, 12);
+    if (rng.below(2) == 0) show.stage.reserve = cells_in(show.stage.grid, "A1:D12");
+    if (rng.below(2) == 0) show.stage.blocked = cells_in(show.stage.grid, "J5:K6");
+    show.stage.max_speed_mps = 0.3 + 2 * rng.uniform();
+    show.sections.push_back(section_of("film", video(), 1, 10 + static_cast<double>(rng.below(60)), 0, 31));
+    show.sections.back().planner.model = rng.below(2) == 0 ? PlannerModel::flat : PlannerModel::hierarchical;
+    show.sections.back().planner.region_size = 10;
+    const int cut = static_cast<int>(rng.below(24));
+    const Film film = tests::film_of(24, [&](int f) {
+      return f < cut ? tests::disc(48, 36, 10 + f, 12, 9)
+                     : tests::mask_where(48, 36, [](int x, int) { return x % 9 < 4; });
+    });
+    const auto planned = plan_show(show, {film});
+    RC_ASSERT(planned.has_value());
+    RC_ASSERT(planned->refusal.empty());
+    RC_ASSERT(planned->plan.valid);
+  });
+}
+
+TEST(PlanShow, NamedPeopleStandWhereTheListSays) {
+  Show show = growing_show(40);
+  std::vector<CellIndex> bow = cells_in(show.stage.grid, "L3:U6");
+  std::reverse(bow.begin(), bow.end());
+  show.sections.push_back(section_of("bow", CellsSource{"bow.csv", bow}, 190, 0, 8, 34));
+  const auto planned = plan_show(show, {growing_film(), std::nullopt});
+  ASSERT_TRUE(planned) << planned.error().message;
+  expect_sound(*planned, show);
+  EXPECT_EQ(planned->plan.formations.back().id, "bow/1");
+  EXPECT_EQ(planned->plan.formations.back().cells, bow);
+}
+
+TEST(PlanShow, RefusesASectionThatCannotBeWalkedAndSaysWhatWouldDo) {
+  Show show = show_with(2, GridKind::square, 40, 4);
+  show.sections.push_back(section_of(
+      "start", CellsSource{"start.csv", {show.stage.grid.index({0, 0}), show.stage.grid.index({0, 2})}}, 1, 0, 8, 31));
+  show.sections.push_back(section_of(
+      "bow", CellsSource{"bow.csv", {show.stage.grid.index({31, 0}), show.stage.grid.index({4, 2})}}, 17, 0, 8, 34));
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  EXPECT_FALSE(planned->plan.valid);
+  EXPECT_THAT(
+      planned->refusal,
+      testing::ElementsAre(
+          "show.yaml:34:5: error: sections[1]: performer 1 would walk 31.0 m from A1 to AF1 between count 9 and "
+          "count 17 at 7.8 m/s, 5.5 times the limit of 1.4 m/s (start the section 37 counts later, hold the "
+          "one before shorter, or slow the music to 21 counts a minute)"));
+}
+
+TEST(PlanShow, RefusesNamedPeopleWhoWouldMeet) {
+  Show show = show_with(2, GridKind::square, 12, 4);
+  const CellIndex left = show.stage.grid.index({1, 1});
+  const CellIndex right = show.stage.grid.index({8, 1});
+  show.sections.push_back(section_of("start", CellsSource{"start.csv", {left, right}}, 1, 0, 0, 31));
+  show.sections.push_back(section_of("swap", CellsSource{"swap.csv", {right, left}}, 33, 0, 0, 34));
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  EXPECT_FALSE(planned->plan.valid);
+  ASSERT_EQ(planned->refusal.size(), 1U);
+  EXPECT_THAT(planned->refusal.front(), testing::StartsWith("show.yaml:34:5: error: sections[1]: performers 1 "));
+}
+
+TEST(PlanShow, MorePeopleThanCellsIsAnInputError) {
+  Show show = show_with(700);
+  show.sections.push_back(section_of("film", video(), 1, 40, 0, 31));
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().kind, ErrorKind::input);
+  EXPECT_EQ(planned.error().message,
+            "show.yaml:31:5: error: sections[0]: 700 performers, but the stage has 600 cells to stand on (a larger "
+            "grid, a smaller pitch or fewer performers)");
+}
+
+TEST(PlanShow, MorePeopleThanTheLargestPictureAndTheReserveHoldIsAnInputError) {
+  Show show = show_with(100);
+  show.stage.reserve = cells_in(show.stage.grid, "A1:A10");
+  VideoSource contained = video();
+  contained.picture.fit = Fit::contain;
+  show.sections.push_back(section_of("dot", contained, 1, 40, 0, 31));
+  const Film dot = tests::film_of(10, [](int) { return tests::disc(58, 40, 21, 21, 1); });
+  const auto planned = plan_show(show, {dot});
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().message,
+            "show.yaml:31:5: error: sections[0]: 100 performers, but the largest picture of 'film.mp4' holds 1 and the "
+            "reserve 10 (at least 89 more reserve cells, a larger floor, fit: area, or fewer performers)");
+}
+
+TEST(PlanShow, BlackFilmKeepsEverybodyInTheReserveOrIsAnInputError) {
+  Show show = growing_show(30);
+  const Film black = tests::film_of(10, [](int) { return Mask(40, 30); });
+  const auto planned = plan_show(show, {black});
+  ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  show.stage.reserve.clear();
+  const auto failed = plan_show(show, {black});
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().message,
+            "show.yaml:31:5: error: sections[0]: 30 performers, but the largest picture of 'film.mp4' holds 0 and the "
+            "reserve 0 (at least 30 more reserve cells, a larger floor, fit: area, or fewer performers)");
+}
+
+TEST(PlanShow, WhiteFilmOnePixelAndOnePersonArePlanned) {
+  const Film white = tests::film_of(10, [](int) { return tests::mask_where(40, 30, [](int, int) { return true; }); });
+  const Film pixel = tests::film_of(
+      10, [](int) { return tests::mask_where(40, 30, [](int x, int y) { return x == 10 && y == 12; }); });
+  for (const Film& film : {white, pixel}) {
+    for (const int people : {1, 120}) {
+      Show show = show_with(people);
+      show.sections.push_back(section_of("film", video(), 1, 40, 0, 31));
+      const auto planned = plan_show(show, {film});
+      ASSERT_TRUE(planned) << planned.error().message;
+      expect_sound(*planned, show);
+    }
+  }
+}
+
+TEST(PlanShow, FilmThatFollowsAtOnceTakesPeopleAsTheyStand) {
+  Show show = growing_show(40);
+  show.sections.push_back(section_of("again", video(), 125, 60, 0, 40));
+  const auto planned = plan_show(show, {growing_film(), growing_film()});
+  ASSERT_TRUE(planned) << planned.error().message;
+  expect_sound(*planned, show);
+}
+
+TEST(PlanShow, ImageIsHeldAndPeopleStandStill) {
+  Show show = show_with(60);
+  show.sections.push_back(section_of("disc", ImageSource{"disc.png", {}}, 9, 0, 16, 31));
+  const auto planned = plan_show(show, {tests::film_of(1, [](int) { return tests::disc(60, 60, 30, 30, 20); })});
+  ASSERT_TRUE(planned) << planned.error().message;
+  expect_sound(*planned, show);
+  EXPECT_FALSE(planned->plan.formations.front().frame.has_value());
+  for (const auto& track : planned->plan.tracks) {
+    EXPECT_EQ(track.front().time, kStart);  // the opening form stands from the show's first instant
+    EXPECT_EQ(track.back().time, show.tempo.at(25));
+    EXPECT_EQ(track.front().cell, track.back().cell);
+  }
+}
+
+TEST(PlanShow, ShortestDurationIsOneInWhichNobodyGivesWay) {
+  Show show = growing_show(40);
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_TRUE(planned && planned->shortest.front().has_value());
+  EXPECT_GT(planned->shortest.front()->counts, 1);
+  EXPECT_THAT(planned->shortest.front()->limited_by, testing::HasSubstr(" m between count "));
+}
+
+TEST(PlanShow, StopsWhenToldTo) {
+  const std::atomic<bool> stop = true;
+  Progress progress;
+  progress.stop = &stop;
+  const auto planned = plan_show(growing_show(40), {growing_film()}, progress);
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().kind, ErrorKind::interrupted);
+}
+
+TEST(PlanShow, ShowWithoutPeopleIsAnInputError) {
+  Show show = growing_show(0);
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().message, "show.yaml: error: performers: the show has nobody in it");
+}
+
+}  // namespace
+}  // namespace footlight::planner

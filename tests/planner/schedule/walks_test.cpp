@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/schedule/walks.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "core/rng.hpp"
+#include "planner/repair/closest_approach.hpp"
+
+namespace footlight::planner {
+namespace {
+
+std::vector<Walk> walks_of(const Grid& grid, const std::vector<CellIndex>& from, const std::vector<CellIndex>& to,
+                           const Leg& leg) {
+  std::vector<Walk> walks;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    walks.push_back({grid.centre(from[i]), grid.centre(to[leg.target_of[i]])});
+  }
+  return walks;
+}
+
+TEST(Settle, PeopleWhoWouldCrossExchangeTheirTargets) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> from{CellIndex(0), CellIndex(5)};
+  const std::vector<CellIndex> to{CellIndex(6), CellIndex(1)};
+  const Leg leg = settle({&ways, from, to, 9, 0.5});
+  EXPECT_EQ(leg.target_of, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_TRUE(leg.walkable);
+  EXPECT_TRUE(leg.conflicts.empty());
+}
+
+TEST(Settle, TargetsTooFarForTheirPeopleAreHandedOutAnew) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> from{CellIndex(0), CellIndex(3), CellIndex(6)};
+  const std::vector<CellIndex> to{CellIndex(9), CellIndex(3), CellIndex(6)};
+  const Leg leg = settle({&ways, from, to, 3.5, 0.5});
+  EXPECT_TRUE(leg.walkable);
+  EXPECT_EQ(leg.target_of, (std::vector<std::uint32_t>{1, 2, 0}));
+  EXPECT_FALSE(settle({&ways, from, to, 2.5, 0.5}).walkable);
+}
+
+TEST(Settle, SaysWhoIsTooCloseWhereNothingHelps) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 4, 4, 1.0);
+  const Ways ways(stage, 0.25);
+  // Diagonal moves around a corner: nearer than 0.9 m whatever the pairing.
+  const std::vector<CellIndex> from{stage.grid.index({0, 0}), stage.grid.index({1, 0})};
+  const std::vector<CellIndex> to{stage.grid.index({1, 1}), stage.grid.index({1, 2})};
+  const Leg leg = settle({&ways, from, to, 9, 0.95});
+  ASSERT_EQ(leg.conflicts.size(), 1U);
+  EXPECT_EQ(leg.conflicts.front(), std::pair(0U, 1U));
+}
+
+TEST(Settle, WithoutALimitNobodyEverComesNearerThanTheBound) {
+  rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    Stage stage;
+    stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 10, 9, 1.0);
+    const Ways ways(stage, 0.25);
+    const std::size_t people = 1 + rng.below(80);
+    const auto some = [&] {
+      std::vector<CellIndex> cells;
+      for (int i = 0; i < stage.grid.size(); ++i) cells.push_back(CellIndex::of(i));
+      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
+      cells.resize(people);
+      return cells;
+    };
+    const auto from = some();
+    const auto to = some();
+    const Leg leg = settle({&ways, from, to, 1e9, 0.5});
+    RC_ASSERT(leg.conflicts.empty());
+    RC_ASSERT(near_pairs(walks_of(stage.grid, from, to, leg), stage.grid.clearance_bound_m() - 1e-9).empty());
+  });
+}
+
+}  // namespace
+}  // namespace footlight::planner
