@@ -44,6 +44,6 @@ using LookIndex = std::uint8_t;
 }  // namespace footlight
 
 template <class Tag>
-struct std::hash<footlight::Index<Tag>> {
+struct std::hash<footlight::Index<Tag>> {  // NOLINT(cert-dcl58-cpp): a hash of one's own type is what std allows
   std::size_t operator()(footlight::Index<Tag> index) const noexcept { return index.value(); }
 };

@@ -139,7 +139,7 @@ std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus) {
   return addresses;
 }
 
-Result<DriverPointer> make_driver(const Bus& bus, std::vector<NodeAddress> nodes, std::uint8_t plan_byte,
+Result<DriverPointer> make_driver(const Bus& bus, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
                                   PortReference port) {
   for (const Language& language : kLanguages) {
     if (language.kind != bus.kind) continue;

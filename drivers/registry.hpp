@@ -27,7 +27,7 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
 /// @param port of the kind that the bus needs: ByteStream for serial, CanPort for CAN, ModbusPort for both Modbus kinds
 ///             (another kind is a programmer error)
 /// Errors: ErrorKind::input for addresses or channels that the bus cannot have.
-[[nodiscard]] Result<std::unique_ptr<Driver>> make_driver(const Bus& bus, std::vector<NodeAddress> nodes,
+[[nodiscard]] Result<std::unique_ptr<Driver>> make_driver(const Bus& bus, const std::vector<NodeAddress>& nodes,
                                                           std::uint8_t plan_byte, PortReference port);
 
 /// Opens the real wire that the bus's URL names: serial://, rtu://, tcp://, can:// (table in registry.cpp).

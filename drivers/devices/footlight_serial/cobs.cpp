@@ -15,15 +15,15 @@ std::vector<std::uint8_t> cobs_encode(std::span<const std::uint8_t> bytes) {
   out.reserve(bytes.size() + bytes.size() / kLongestRun + 1);
   std::size_t code_at = 0;
   out.push_back(0);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
+  for (const std::uint8_t byte : bytes) {
     const bool full = out.size() - code_at == kLongestRun + 1;
-    if (full || bytes[i] == 0) {
+    if (full || byte == 0) {
       out[code_at] = static_cast<std::uint8_t>(out.size() - code_at);
       code_at = out.size();
       out.push_back(0);
     }
-    if (bytes[i] != 0) {
-      out.push_back(bytes[i]);
+    if (byte != 0) {
+      out.push_back(byte);
     } else if (full) {  // the full run has taken no zero with it: this one needs a code of its own
       out[code_at] = 1;
       code_at = out.size();

@@ -14,7 +14,6 @@ using footlight_serial::frame_length;
 
 constexpr Duration kTurnaround = milliseconds(2);  // longest, of a node
 constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, an adapter's latency, a late node
-constexpr std::size_t kHeartbeatBody = 4;
 constexpr std::size_t kLatchBody = 4;
 constexpr int kReadsPerStep = 64;  // a flood must not keep us from sending
 
@@ -109,7 +108,7 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
 void SerialDriver::hear(const Frame& frame, EventSink& events) {
   if (!awaited_ || frame.address != awaited_->node.address || frame.command != awaited_->command) return;
   if (const auto status = decode_status(frame)) {
-    tell_status(*status, frame.sequence, events);
+    tell_status(awaited_->node, *status, frame.sequence, events);
   } else if (const auto crc = decode_receipt(frame)) {
     if (frame.sequence != awaited_->sequence || *crc != awaited_->crc) return;
     events.on_event({DeviceEvent::Kind::preloaded, awaited_->node.node, frame.sequence});
@@ -120,11 +119,12 @@ void SerialDriver::hear(const Frame& frame, EventSink& events) {
   line_free_ = Instant{};  // the answer was the last thing on the line
 }
 
-void SerialDriver::tell_status(const footlight_serial::NodeStatus& status, Sequence shown, EventSink& events) {
-  std::optional<std::uint16_t>& boots = boots_[awaited_->node.address];
-  if (boots && *boots != status.boots) events.on_event({DeviceEvent::Kind::booted, awaited_->node.node});
+void SerialDriver::tell_status(const NodeAddress& node, const footlight_serial::NodeStatus& status, Sequence shown,
+                               EventSink& events) {
+  std::optional<std::uint16_t>& boots = boots_[node.address];
+  if (boots && *boots != status.boots) events.on_event({DeviceEvent::Kind::booted, node.node});
   boots = status.boots;
-  DeviceEvent event{DeviceEvent::Kind::showing, awaited_->node.node, shown};
+  DeviceEvent event{DeviceEvent::Kind::showing, node.node, shown};
   event.crc = status.crc;
   event.state = status.state;
   event.boots = status.boots;

@@ -49,7 +49,8 @@ class SerialDriver final : public Driver {
   SendStatus send(const footlight_serial::Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                   Instant now);
   void hear(const footlight_serial::Frame& frame, EventSink& events);
-  void tell_status(const footlight_serial::NodeStatus& status, Sequence shown, EventSink& events);
+  void tell_status(const NodeAddress& node, const footlight_serial::NodeStatus& status, Sequence shown,
+                   EventSink& events);
 
   ByteStream& port_;
   std::uint8_t plan_byte_;
