@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "controller/bus_loop.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "core/rng.hpp"
+#include "tests/controller/fake_driver.hpp"
+
+namespace footlight::controller {
+namespace {
+
+using Kind = FakeDriver::Kind;
+
+constexpr std::size_t kChannels = 4;
+constexpr Duration kBeat = milliseconds(500);
+
+/// Switch k at (k + 1) beats; a node's looks change with `period` of the switch.
+CueSchedule schedule_of(std::size_t nodes, std::size_t switches,
+                        const std::function<LookIndex(std::size_t, std::size_t)>& look) {
+  std::vector<Look> looks{{{0, 0, 0}, Effect::steady, 0}};
+  for (int i = 1; i <= 20; ++i) looks.push_back({{static_cast<std::uint8_t>(i), 0, 0}, Effect::steady, 255});
+  std::vector<Switch> list;
+  std::vector<LookIndex> table;
+  for (std::size_t k = 0; k < switches; ++k) {
+    list.push_back({kStart + static_cast<Duration::rep>(k + 1) * kBeat, "switch", false, std::nullopt});
+    for (std::size_t n = 0; n < nodes; ++n) {
+      for (std::size_t c = 0; c < kChannelsPerNode; ++c) table.push_back(c < kChannels ? look(k, n) : kDark);
+    }
+  }
+  return CueSchedule(std::move(looks), std::move(list), nodes, std::move(table), 0, {});
+}
+
+LookIndex every_switch(std::size_t k, std::size_t n) { return static_cast<LookIndex>(1 + (k + n) % 20); }
+
+/// A loop on a fake bus; the show runs by the clock.
+struct Bench {
+  Bench(CueSchedule plan, std::size_t nodes, bool canopen)
+      : schedule(std::move(plan)), driver(nodes, kChannels, canopen), loop(schedule, addresses(nodes), driver) {}
+
+  static std::vector<drivers::NodeAddress> addresses(std::size_t nodes) {
+    std::vector<drivers::NodeAddress> list;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      list.push_back({NodeIndex::of(n), static_cast<std::uint8_t>(n + 1), static_cast<std::uint8_t>(kChannels)});
+    }
+    return list;
+  }
+
+  [[nodiscard]] BusTarget target() const {
+    BusTarget target;
+    target.current = stands_at.value_or(schedule.switch_at(now));
+    target.next = std::min(target.current + 1, schedule.switches().size() - 1);
+    if (target.next != target.current && !stands_at) target.next_at = schedule.switches()[target.next].time;
+    return target;
+  }
+
+  void run_until(Instant end) {
+    while (now < end) {
+      Instant next = loop.step(now, target());
+      if (target().next_at > now) next = std::min(next, target().next_at);
+      if (next <= now) next = now + microseconds(100);
+      now = std::min(next, end);
+    }
+  }
+  /// Just before switch k.
+  void run_to_switch(std::size_t k) { run_until(schedule.switches()[k].time - milliseconds(2)); }
+
+  [[nodiscard]] bool right(std::size_t n, std::size_t k) {
+    return std::ranges::equal(driver.node(n).showing, schedule.looks_of(k, NodeIndex::of(n)).first(kChannels));
+  }
+  [[nodiscard]] std::vector<std::size_t> wrong(std::size_t nodes, std::size_t k) {
+    std::vector<std::size_t> list;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      if (!right(n, k)) list.push_back(n);
+    }
+    return list;
+  }
+
+  CueSchedule schedule;
+  FakeDriver driver;
+  BusLoop loop;
+  Instant now = kStart;
+  std::optional<std::size_t> stands_at;  ///< a switch after which the show waits for GO
+};
+
+using Nobody = std::vector<std::size_t>;
+
+class AnyBus : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Languages, AnyBus, testing::Values(false, true),
+                         [](const auto& bus) { return bus.param ? "canopen" : "sequenced"; });
+
+TEST_P(AnyBus, EveryNodeShowsEverySwitch) {
+  Bench bench(schedule_of(5, 8, every_switch), 5, GetParam());
+  for (std::size_t k = 1; k < 8; ++k) {
+    bench.run_to_switch(k);
+    EXPECT_EQ(bench.wrong(5, k - 1), Nobody{}) << "before switch " << k;
+  }
+  EXPECT_EQ(bench.loop.counters().retries, 0U);
+  EXPECT_EQ(bench.loop.counters().deliveries, 7U * 5 * kChannels);
+  EXPECT_TRUE(bench.driver.broken_rules.empty());
+}
+
+TEST_P(AnyBus, TheLatchHasItsLastBitOnTheWireAtTheInstantOfTheSwitch) {
+  Bench bench(schedule_of(3, 5, every_switch), 3, GetParam());
+  bench.run_to_switch(4);
+  std::vector<Instant> first(5, kNever);
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::latch) {
+      first[operation.sequence - 1U] = std::min(first[operation.sequence - 1U], operation.at + milliseconds(1));
+    }
+  }
+  for (std::size_t k = 1; k < 4; ++k) EXPECT_EQ(first[k], bench.schedule.switches()[k].time);
+  EXPECT_EQ(bench.loop.counters().worst_lateness, Duration{});
+}
+
+TEST_P(AnyBus, OnlyWhoChangesIsPreloaded) {
+  Bench bench(
+      schedule_of(4, 4, [](std::size_t k, std::size_t n) { return static_cast<LookIndex>(n == 2 ? k + 1 : 1); }), 4,
+      GetParam());
+  bench.run_to_switch(1);
+  bench.driver.log.clear();
+  bench.run_to_switch(3);
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::preload) {
+      EXPECT_EQ(operation.node, NodeIndex(2));
+    }
+  }
+  EXPECT_EQ(bench.wrong(4, 2), Nobody{});
+}
+
+TEST_P(AnyBus, ASwitchThatChangesNothingHereNeedsNoLatchOfItsOwn) {
+  Bench bench(schedule_of(2, 4, [](std::size_t, std::size_t) { return LookIndex{3}; }), 2, GetParam());
+  bench.run_until(bench.schedule.switches()[3].time + milliseconds(100));
+  EXPECT_EQ(bench.loop.lit(), 3U);
+  EXPECT_EQ(bench.loop.counters().latches, 0U);
+  EXPECT_TRUE(bench.loop.settled());
+}
+
+TEST_P(AnyBus, ALostPreloadIsRepairedBeforeTheNextSwitch) {
+  Bench bench(schedule_of(4, 6, every_switch), 4, GetParam());
+  const Instant due = bench.schedule.switches()[2].time;
+  bench.driver.lost = [&](Kind kind, NodeIndex node, Instant at) {
+    return kind == Kind::preload && node == NodeIndex(1) && at < due && at > due - kBeat;
+  };
+  bench.run_to_switch(3);
+  EXPECT_EQ(bench.wrong(4, 2), Nobody{});
+  EXPECT_GT(bench.loop.counters().retries, 0U);
+}
+
+TEST_P(AnyBus, ALostLatchIsRepairedBeforeTheNextSwitch) {
+  Bench bench(schedule_of(4, 6, every_switch), 4, GetParam());
+  const Instant due = bench.schedule.switches()[2].time;
+  bench.driver.lost = [&](Kind kind, NodeIndex node, Instant at) {
+    return kind == Kind::latch && node == NodeIndex(3) && at >= due - milliseconds(1) && at < due + milliseconds(5);
+  };
+  bench.run_to_switch(3);
+  EXPECT_EQ(bench.wrong(4, 2), Nobody{});
+}
+
+TEST_P(AnyBus, LostAnswersCostRepeatsAndNoLamp) {
+  Bench bench(schedule_of(4, 6, every_switch), 4, GetParam());
+  int n = 0;
+  bench.driver.answer_lost = [&](NodeIndex, Instant) { return ++n % 3 == 0; };
+  for (std::size_t k = 1; k < 6; ++k) {
+    bench.run_to_switch(k);
+    EXPECT_EQ(bench.wrong(4, k - 1), Nobody{});
+  }
+  EXPECT_GT(bench.loop.counters().misses, 0U);
+  EXPECT_TRUE(bench.driver.broken_rules.empty());
+}
+
+TEST_P(AnyBus, ARebootedNodeIsNoticedAndLitAgainWithItsLookTable) {
+  Bench bench(schedule_of(4, 3, [](std::size_t k, std::size_t) { return static_cast<LookIndex>(k + 1); }), 4,
+              GetParam());
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(400));
+  ASSERT_EQ(bench.wrong(4, 0), Nobody{});
+  bench.driver.reboot(2);
+  bench.driver.log.clear();
+  bench.run_until(kStart + milliseconds(1400));
+  EXPECT_EQ(bench.wrong(4, 0), Nobody{});
+  EXPECT_EQ(bench.loop.counters().boots, 1U);
+  const auto is = [](Kind kind, int sequence) {
+    return [=](const auto& operation) { return operation.kind == kind && operation.sequence == sequence; };
+  };
+  const auto upload = std::ranges::find_if(bench.driver.log, is(Kind::upload, 1));
+  const auto preload = std::ranges::find_if(bench.driver.log, [](const auto& o) {
+    return o.kind == Kind::preload && o.node == NodeIndex(2) && o.sequence == 1;
+  });
+  ASSERT_NE(upload, bench.driver.log.end());
+  ASSERT_NE(preload, bench.driver.log.end());
+  EXPECT_LT(upload - bench.driver.log.begin(), preload - bench.driver.log.begin());
+}
+
+TEST_P(AnyBus, ADeadNodeIsAskedOnceASecondAndCostsTheOthersNoSwitch) {
+  Bench bench(schedule_of(4, 20, every_switch), 4, GetParam());
+  bench.driver.node(1).dead = true;
+  for (std::size_t k = 1; k < 20; ++k) {
+    bench.run_to_switch(k);
+    EXPECT_EQ(bench.wrong(4, k - 1), Nobody{1});
+  }
+  EXPECT_EQ(bench.loop.quarantined(), std::vector{NodeIndex(1)});
+  EXPECT_EQ(bench.loop.counters().quarantines, 1U);
+  EXPECT_EQ(bench.loop.counters().late_latches, 0U);
+  bench.driver.log.clear();
+  const Instant from = bench.now;
+  bench.run_until(from + std::chrono::seconds(4));
+  const auto asked = std::ranges::count_if(bench.driver.log, [](const auto& o) {
+    return o.node == NodeIndex(1) && (o.kind == Kind::ask || o.kind == Kind::preload);
+  });
+  EXPECT_LE(asked, 5);
+}
+
+TEST_P(AnyBus, ANodeThatComesBackFromTheDeadIsLit) {
+  Bench bench(schedule_of(3, 3, every_switch), 3, GetParam());
+  bench.stands_at = 0;
+  bench.driver.node(1).dead = true;
+  bench.run_until(kStart + milliseconds(400));
+  bench.driver.node(1).dead = false;
+  bench.stands_at.reset();
+  bench.run_until(kStart + std::chrono::seconds(4));
+  EXPECT_EQ(bench.wrong(3, 2), Nobody{});
+  EXPECT_TRUE(bench.loop.quarantined().empty());
+}
+
+TEST_P(AnyBus, HeartbeatsAreNeverMoreThanALeaseApart) {
+  Bench bench(schedule_of(10, 20, every_switch), 10, GetParam());
+  bench.run_to_switch(19);
+  Instant last = kStart;
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind != Kind::heartbeat) continue;
+    EXPECT_LE(operation.at - last, milliseconds(500));
+    last = operation.at;
+  }
+  EXPECT_GT(last, kStart + milliseconds(9000));
+}
+
+TEST_P(AnyBus, NothingIsStartedThatWouldNotEndBeforeTheLatch) {
+  Bench bench(schedule_of(12, 10, every_switch), 12, GetParam());
+  bench.run_to_switch(9);
+  for (std::size_t i = 1; i < bench.driver.log.size(); ++i) {
+    const auto& operation = bench.driver.log[i];
+    const Instant due = bench.schedule.switches()[bench.schedule.switch_at(operation.at) + 1].time;
+    if (operation.kind == Kind::latch || operation.at < bench.schedule.switches()[0].time) continue;
+    const Duration time = operation.kind == Kind::preload ? milliseconds(4)
+                          : operation.kind == Kind::ask   ? milliseconds(3)
+                                                          : milliseconds(1);
+    EXPECT_LE(operation.at + time, due - milliseconds(1));
+  }
+  EXPECT_EQ(bench.loop.counters().worst_lateness, Duration{});
+}
+
+TEST_P(AnyBus, WhileTheShowWaitsTheLampsKeep) {
+  Bench bench(schedule_of(4, 3, every_switch), 4, GetParam());
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(900));
+  EXPECT_EQ(bench.wrong(4, 0), Nobody{});
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::latch) {
+      EXPECT_EQ(operation.sequence, 1);
+    }
+  }
+}
+
+TEST_P(AnyBus, AControllerThatStartsInTheMiddleLightsTheRightStateAndNothingBefore) {
+  Bench bench(schedule_of(4, 10, every_switch), 4, GetParam());
+  bench.now = bench.schedule.switches()[6].time + milliseconds(20);
+  bench.run_to_switch(7);
+  EXPECT_EQ(bench.wrong(4, 6), Nobody{});
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::latch || operation.kind == Kind::preload) {
+      EXPECT_GE(operation.sequence, 7);
+    }
+  }
+}
+
+TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
+  const CueSchedule schedule = schedule_of(3, 4, every_switch);
+  Bench bench(schedule, 3, false);
+  for (std::size_t n = 0; n < 3; ++n) {
+    auto& node = bench.driver.node(n);
+    const auto looks = schedule.looks_of(2, NodeIndex::of(n)).first(kChannels);
+    node.showing.assign(looks.begin(), looks.end());
+    node.shown_sequence = sequence_of(2);
+    node.state = 1;
+  }
+  bench.stands_at = 2;
+  bench.now = schedule.switches()[2].time + milliseconds(1);
+  bench.run_until(bench.now + milliseconds(200));
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::preload) {
+      EXPECT_EQ(operation.sequence, sequence_of(3));
+    }
+  }
+  EXPECT_TRUE(bench.loop.settled());
+}
+
+TEST(SequencedBus, SequencesGoFromOneTo240AndWrap) {
+  EXPECT_EQ(sequence_of(0), 1);
+  EXPECT_EQ(sequence_of(239), 240);
+  EXPECT_EQ(sequence_of(240), 1);
+}
+
+TEST(SequencedBus, LooksOfTheNextSwitchWaitInTheNodesWhileTheShowWaits) {
+  Bench bench(schedule_of(4, 3, every_switch), 4, false);
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(900));
+  for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(bench.driver.node(n).pending_sequence, sequence_of(1));
+}
+
+TEST(CanopenBus, NothingOfTheNextSwitchIsPreloadedWhileTheShowWaits) {
+  Bench bench(schedule_of(4, 3, every_switch), 4, true);
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(900));
+  for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(bench.driver.node(n).pending_sequence, 0);
+  EXPECT_GE(bench.loop.notice(1), 4 * milliseconds(4) + milliseconds(1)) << "a GO has to be known that long before";
+}
+
+TEST(CanopenBus, WithTimeEveryPreloadIsSentTwice) {
+  Bench bench(schedule_of(3, 4, every_switch), 3, true);
+  bench.run_until(bench.schedule.switches()[1].time);
+  bench.driver.log.clear();
+  bench.run_to_switch(2);
+  EXPECT_EQ(bench.driver.count(Kind::preload), 6U);
+}
+
+/// Loses a share of everything by a seed, restarts nodes.
+void make_unreliable(Bench& bench, std::uint64_t seed, double share) {
+  auto rng = std::make_shared<Rng>(seed);
+  bench.driver.lost = [=](Kind, NodeIndex, Instant) { return rng->uniform() < share; };
+  bench.driver.answer_lost = [=](NodeIndex, Instant) { return rng->uniform() < share; };
+}
+
+TEST(CanopenBus, ASyncNeverTakesLooksOfALaterSwitchWhateverIsLost) {
+  rc::check([] {
+    const auto nodes = *rc::gen::inRange<std::size_t>(1, 9);
+    const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+    const auto percent = *rc::gen::inRange(0, 50);
+    Bench bench(schedule_of(nodes, 8, every_switch), nodes, true);
+    make_unreliable(bench, seed, percent / 100.0);
+    for (std::size_t k = 1; k < 8; ++k) {
+      bench.run_to_switch(k);
+      if (seed % 3 == 0) bench.driver.reboot(seed % nodes);
+    }
+    RC_ASSERT(bench.driver.broken_rules.empty());
+  });
+}
+
+TEST(SequencedBus, NoNodeEverShowsALaterSwitchWhateverIsLost) {
+  rc::check([] {
+    const auto nodes = *rc::gen::inRange<std::size_t>(1, 9);
+    const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+    Bench bench(schedule_of(nodes, 8, every_switch), nodes, false);
+    make_unreliable(bench, seed, 0.3);
+    for (std::size_t k = 1; k < 8; ++k) {
+      bench.run_to_switch(k);
+      for (std::size_t n = 0; n < nodes; ++n) RC_ASSERT(bench.driver.node(n).shown_sequence <= sequence_of(k - 1));
+    }
+  });
+}
+
+TEST_P(AnyBus, AfterTheFaultsEveryLivingNodeIsRightWithinTwoRefreshRounds) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Bench bench(schedule_of(6, 10, every_switch), 6, GetParam());
+    make_unreliable(bench, seed, 0.3);
+    for (std::size_t k = 1; k < 9; ++k) {
+      bench.run_to_switch(k);
+      if (k % 3 == 0) bench.driver.reboot(seed % 6);
+    }
+    bench.driver.lost = [](Kind, NodeIndex, Instant) { return false; };
+    bench.driver.answer_lost = [](NodeIndex, Instant) { return false; };
+    bench.run_until(bench.schedule.switches()[9].time + std::chrono::seconds(2));
+    EXPECT_EQ(bench.wrong(6, 9), Nobody{}) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace footlight::controller
