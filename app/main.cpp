@@ -9,6 +9,7 @@
 
 #include "app/check_command.hpp"
 #include "app/command.hpp"
+#include "app/dryrun_command.hpp"
 #include "app/export_command.hpp"
 #include "app/measure_command.hpp"
 #include "app/new_command.hpp"
@@ -19,7 +20,7 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command, add_check_command, add_plan_command, add_measure_command, add_export_command,
+    add_new_command, add_check_command, add_plan_command, add_measure_command, add_export_command, add_dryrun_command,
 };
 
 constexpr const char* kFooter =
