@@ -27,27 +27,6 @@ bool needs_own_length(const Section& section) {
   return section.duration_counts == 0 && std::holds_alternative<VideoSource>(section.from);
 }
 
-/// Counts that a film lasts at its own speed; nothing when the file does not say how fast that is.
-std::optional<double> own_length(const Show& show, const Section& section, const Film& film) {
-  if (!(film.fps > 0) || film.frames.size() < 2) return std::nullopt;
-  const Duration length = seconds(static_cast<double>(film.frames.size() - 1) / film.fps);
-  return show.tempo.count_at(show.tempo.at(section.start_count) + length) - section.start_count;
-}
-
-void check_overlaps(const Show& show, Diagnostics& diagnostics) {
-  for (std::size_t i = 1; i < show.sections.size(); ++i) {
-    const Section& before = show.sections[i - 1];
-    const Section& after = show.sections[i];
-    if (after.start_count >= before.end_count()) continue;
-    diagnostics.error(
-        after.position, key_path(show, after, ".start"),
-        fmt::format("section '{}' begins at count {:g}, but '{}' lasts until count {:g}{}", after.name,
-                    after.start_count, before.name, before.end_count(),
-                    std::holds_alternative<VideoSource>(before.from) ? " at its film's own length" : ""),
-        fmt::format("start at count {:g} or later, or give '{}' a duration", before.end_count(), before.name));
-  }
-}
-
 /// @return nothing when the source has no film
 std::optional<Result<Film>> decode(const Session& session, const Section& section) {
   if (const auto* video = std::get_if<VideoSource>(&section.from)) {
@@ -76,9 +55,10 @@ Result<config::LoadedShow> read_show(Session& session, const std::string& file) 
 Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
   Show& show = loaded.show;
   Films films(show.sections.size());
+  std::vector<std::optional<config::FilmLength>> lengths(show.sections.size());
   Diagnostics diagnostics;
   for (std::size_t i = 0; i < show.sections.size(); ++i) {
-    Section& section = show.sections[i];
+    const Section& section = show.sections[i];
     session.tell("decoding", static_cast<double>(i) / static_cast<double>(show.sections.size()));
     auto film = decode(session, section);
     if (!film) continue;
@@ -91,16 +71,11 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
       diagnostics.error(section.position, key_path(show, section, video ? ".from.video" : ".from.image"),
                         film->error().message);
     }
-    if (!films[i] || !needs_own_length(section)) continue;
-    if (const auto counts = own_length(show, section, *films[i])) {
-      section.duration_counts = *counts;
-    } else {
-      diagnostics.error(section.position, key_path(show, section, ".duration"),
-                        "the film does not say how fast it runs", "give the section a duration");
-    }
+    if (films[i]) lengths[i] = {static_cast<int>(films[i]->frames.size()), films[i]->fps};
   }
-  if (!diagnostics.has_errors()) check_overlaps(show, diagnostics);
   if (diagnostics.has_errors()) return input_error(without_last_newline(diagnostics.to_text()));
+  const auto settled = config::settle_film_lengths(show, lengths);
+  if (!settled) return input_error(without_last_newline(settled.error().to_text()));
   session.tell("decoding", 1);
   return films;
 }

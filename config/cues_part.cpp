@@ -28,12 +28,12 @@ std::optional<SectionIndex> read_section_name(MappingReader& cue, const ShowRead
   const Show& show = reading.show();
   const auto written = cue.written("section");
   if (!written) return std::nullopt;
-  std::vector<std::string> names;
-  for (std::size_t s = 0; s < show.sections.size(); ++s) {
-    if (show.sections[s].name == written->text) return SectionIndex::of(s);
-    names.push_back(show.sections[s].name);
-  }
+  const auto found = std::find_if(show.sections.begin(), show.sections.end(),
+                                  [&](const Section& section) { return section.name == written->text; });
+  if (found != show.sections.end()) return SectionIndex::of(found - show.sections.begin());
   if (reading.has_all_sections) {  // otherwise it may be an echo of another error
+    std::vector<std::string> names;
+    for (const Section& section : show.sections) names.push_back(section.name);
     cue.error(*written, "no section has the name " + in_quotes(written->text),
               suggestion(written->text, names, "sections"));
   }

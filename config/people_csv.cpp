@@ -45,7 +45,9 @@ class RosterReader {
       : show_(show.show()),
         diagnostics_(show.reading.diagnostics),
         table_(table),
-        groups_given_(!show_.groups.empty()) {}
+        groups_given_(!show_.groups.empty()) {
+    for (std::size_t g = 0; g < show_.groups.size(); ++g) groups_.emplace(show_.groups[g].name, GroupIndex::of(g));
+  }
 
   void read(const std::vector<CsvField>& row, std::size_t id_column) {
     const CsvField& id = row[id_column];
@@ -89,17 +91,16 @@ class RosterReader {
     return 0;
   }
   std::optional<GroupIndex> group_of(const CsvField& written) {
-    std::vector<std::string> names;
-    for (std::size_t g = 0; g < show_.groups.size(); ++g) {
-      if (show_.groups[g].name == written.text) return GroupIndex::of(g);
-      names.push_back(show_.groups[g].name);
-    }
+    const auto known = groups_.find(written.text);
+    if (known != groups_.end()) return known->second;
     if (groups_given_) {
+      std::vector<std::string> names;
+      for (const Group& group : show_.groups) names.push_back(group.name);
       error(written, "no group has the name " + in_quotes(written.text), suggestion(written.text, names, "groups"));
       return std::nullopt;
     }
     show_.groups.push_back({written.text, kPalette.at(show_.groups.size() % kPalette.size())});
-    return GroupIndex::of(show_.groups.size() - 1);
+    return groups_.emplace(written.text, GroupIndex::of(show_.groups.size() - 1)).first->second;
   }
   std::string wearable_of(const CsvField& written) {
     const auto [first, is_new] = worn_.emplace(written.text, written.line);
@@ -114,6 +115,7 @@ class RosterReader {
   Diagnostics& diagnostics_;
   const CsvTable& table_;
   bool groups_given_;
+  std::unordered_map<std::string, GroupIndex> groups_;
   std::unordered_map<std::string, int> lines_;
   std::unordered_map<std::string, int> worn_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <set>
 #include <unordered_map>
 
 #include "config/nearest.hpp"
@@ -13,12 +13,6 @@ using IdIndex = std::unordered_map<std::string, PerformerIndex>;
 IdIndex index_ids(const std::vector<Performer>& performers) {
   IdIndex out;
   for (std::size_t i = 0; i < performers.size(); ++i) out.emplace(performers[i].id, PerformerIndex::of(i));
-  return out;
-}
-
-std::vector<std::string> group_names(const Show& show) {
-  std::vector<std::string> out;
-  for (const Group& group : show.groups) out.push_back(group.name);
   return out;
 }
 
@@ -70,7 +64,7 @@ class Membership {
  private:
   bool join(const Written& written, PerformerIndex performer) {
     auto& group = show_.performers[performer.at()].group;
-    if (group && *group != index_) {
+    if (group) {  // in this one, too: so nobody is looked at twice, however often she is named
       group_.error(written,
                    "performer " + show_.performers[performer.at()].id + " is already in the group " +
                        in_quotes(show_.groups[group->at()].name),
@@ -94,12 +88,12 @@ class Membership {
 /// Names and colours; members later, as a roster's rows name groups and members name rows.
 std::vector<MappingReader> read_groups(ShowReading& show, MappingReader& performers) {
   std::vector<MappingReader> kept;
+  std::set<std::string> names;
   for (MappingReader& group : performers.mappings("groups")) {
     const auto name = group.text("name");
     const auto colour = read_colour(group);
     if (!name) continue;
-    const auto names = group_names(show.show());
-    if (std::find(names.begin(), names.end(), *name) != names.end()) {
+    if (!names.insert(*name).second) {
       group.error("name", "a second group has the name " + in_quotes(*name), "names of groups are unique");
       continue;
     }

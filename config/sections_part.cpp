@@ -111,6 +111,12 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
 
 }  // namespace
 
+std::string section_path(const std::vector<Section>& sections, const Section& section) {
+  const auto place = std::count_if(sections.begin(), sections.end(),
+                                   [&](const Section& other) { return other.position < section.position; });
+  return "sections[" + std::to_string(place) + "]";
+}
+
 void check_overlaps(const std::vector<Section>& sections, Diagnostics& diagnostics) {
   for (std::size_t i = 1; i < sections.size(); ++i) {
     const Section& before = sections[i - 1];
@@ -118,7 +124,7 @@ void check_overlaps(const std::vector<Section>& sections, Diagnostics& diagnosti
     const bool same_start = after.start_count <= before.start_count;
     if (!same_start && after.start_count >= before.end_count()) continue;
     const std::string end = plain(before.end_count());
-    diagnostics.error(after.position, "sections",
+    diagnostics.error(after.position, section_path(sections, after) + ".start",
                       "section " + in_quotes(after.name) + " starts at count " + plain(after.start_count) +
                           ", and section " + in_quotes(before.name) + " lasts until count " + end,
                       same_start && before.end_count() <= before.start_count

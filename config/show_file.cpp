@@ -102,7 +102,7 @@ Status<Diagnostics> settle_film_lengths(Show& show, const std::vector<std::optio
     if (!std::holds_alternative<VideoSource>(section.from) || section.duration_counts > 0 || !films[s]) continue;
     const FilmLength& film = *films[s];
     if (film.frames < 2 || !(film.fps > 0)) {
-      diagnostics.error(section.position, "sections",
+      diagnostics.error(section.position, section_path(show.sections, section) + ".duration",
                         "the video of section " + in_quotes(section.name) + " has no length of its own",
                         "give the section a duration, as 224 counts");
       continue;

@@ -33,6 +33,8 @@ void read_stage(ShowReading& show, MappingReader stage);
 void read_performers(ShowReading& show, MappingReader performers);
 void read_music(ShowReading& show, MappingReader music);
 void read_sections(ShowReading& show, MappingReader& root);
+/// "sections[2]": its place in the file, which need not be its place in time.
+[[nodiscard]] std::string section_path(const std::vector<Section>& sections, const Section& section);
 /// Sections ascending by start. Says which two overlap; a video without a duration has no length yet.
 void check_overlaps(const std::vector<Section>& sections, Diagnostics& diagnostics);
 void read_cues(ShowReading& show, MappingReader& root);

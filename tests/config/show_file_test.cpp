@@ -163,7 +163,8 @@ TEST_F(ShowFile, TakesAVideoWithoutDurationAsItsOwnLength) {
   EXPECT_DOUBLE_EQ(show.sections[0].duration_counts, 20);
   show.sections[0].duration_counts = 0;
   EXPECT_EQ(folder_.without_folder(settle_film_lengths(show, {FilmLength{276, 25}, std::nullopt}).error().to_text()),
-            "show.yaml:5:64: error: sections: section \"b\" starts at count 21, and section \"a\" lasts until count 23 "
+            "show.yaml:5:64: error: sections[1].start: section \"b\" starts at count 21, and section \"a\" lasts until "
+            "count 23 "
             "(start it at count 23 or later)\n");
 }
 
@@ -247,18 +248,26 @@ TEST_F(ShowFile, PutsNobodyIntoTwoGroups) {
             "unique)\n");
 }
 
+TEST_F(ShowFile, NamesNobodyTwiceInAGroup) {
+  EXPECT_EQ(errors_of_performers("{count: 2, groups: [{name: g, members: [1-2, 1-2], colour: \"#112233\"}]}"),
+            "show.yaml:4:58: error: performers.groups[0].members[1]: performer 1 is already in the group \"g\" "
+            "(everybody is in one group at most)\n");
+}
+
 TEST_F(ShowFile, NamesBothSectionsThatOverlap) {
-  EXPECT_EQ(errors_of("sections:\n"
-                      "  - {name: growth, from: {video: film.mp4}, start: count 1, duration: 224 counts}\n"
-                      "  - {name: bow, from: {cells: a.csv}, start: count 200}\n"
-                      "  - {name: bow, from: {cells: a.csv}, start: count 300}\n"
-                      "  - {name: end, from: {cells: a.csv}, start: count 200}\n"),
-            "show.yaml:7:5: error: sections: section \"bow\" starts at count 200, and section \"growth\" lasts until "
-            "count 225 (start it at count 225 or later)\n"
-            "show.yaml:8:12: error: sections[2].name: a second section has the name \"bow\" (first in line 7; names of "
-            "sections are unique)\n"
-            "show.yaml:9:5: error: sections: section \"end\" starts at count 200, and section \"bow\" lasts until "
-            "count 200 (start it later)\n");
+  EXPECT_EQ(
+      errors_of("sections:\n"
+                "  - {name: growth, from: {video: film.mp4}, start: count 1, duration: 224 counts}\n"
+                "  - {name: bow, from: {cells: a.csv}, start: count 200}\n"
+                "  - {name: bow, from: {cells: a.csv}, start: count 300}\n"
+                "  - {name: end, from: {cells: a.csv}, start: count 200}\n"),
+      "show.yaml:7:5: error: sections[1].start: section \"bow\" starts at count 200, and section \"growth\" lasts "
+      "until "
+      "count 225 (start it at count 225 or later)\n"
+      "show.yaml:8:12: error: sections[2].name: a second section has the name \"bow\" (first in line 7; names of "
+      "sections are unique)\n"
+      "show.yaml:9:5: error: sections[2].start: section \"end\" starts at count 200, and section \"bow\" lasts until "
+      "count 200 (start it later)\n");
 }
 
 TEST_F(ShowFile, FindsEveryFileThatIsMissing) {
