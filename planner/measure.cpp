@@ -84,15 +84,20 @@ class Measurer {
     draw(out);
     const Instant first = walks_.times().empty() ? kStart : walks_.times().front();
     const Instant last = walks_.times().empty() ? kStart : walks_.times().back();
+    add_walks(walks_, first, last, out.show);
+    add_clearance(plan_, walks_, first, last, out.show);
     Instant after = first;
     for (std::size_t k = 0; k < out.sections.size() && !progress_.stopped(); ++k) {
       const Instant until = std::max(after, plan_.sections[k].end);
       add_walks(walks_, after, until, out.sections[k]);
-      add_clearance(plan_, walks_, after, until, out.sections[k]);
+      if (after == first && until >= last) {
+        out.sections[k].min_clearance_m = out.show.min_clearance_m;
+        out.sections[k].too_close = out.show.too_close;
+      } else {
+        add_clearance(plan_, walks_, after, until, out.sections[k]);
+      }
       after = until;
     }
-    add_walks(walks_, first, last, out.show);
-    add_clearance(plan_, walks_, first, last, out.show);
     for (const Formation& formation : plan_.formations) {
       ++out.show.formations;
       if (formation.section.at() < out.sections.size()) ++out.sections[formation.section.at()].formations;
