@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -15,6 +16,7 @@
 #include "app/new_command.hpp"
 #include "app/plan_command.hpp"
 #include "app/session.hpp"
+#include "config/nearest.hpp"
 
 namespace footlight::app {
 namespace {
@@ -34,6 +36,13 @@ int finish(int status, Session& session) {
   return session.fail(input_error(std::string("cannot write the result to stdout: ") + std::strerror(errno)));
 }
 
+Error unknown_command(const CLI::App& program, const std::string& word) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands(nullptr)) known.push_back(command->get_name());
+  return input_error("there is no command " + config::in_quotes(word) + " (" +
+                     config::suggestion(word, known, "commands") + ")");
+}
+
 int run(int argc, char** argv) {
   Session session(stop_on_signals());
   Chosen chosen;
@@ -48,6 +57,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return finish(program.exit(asked), session);
   } catch (const CLI::ParseError& error) {
+    if (program.get_subcommands().empty() && !program.remaining().empty()) {
+      return session.fail(unknown_command(program, program.remaining().front()));
+    }
     return session.fail(input_error(std::string(error.what()) + " (footlight --help tells what there is)"));
   }
   return finish(chosen(), session);

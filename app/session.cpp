@@ -27,8 +27,9 @@ void write(std::FILE* file, std::string_view text) { std::fwrite(text.data(), 1,
 const std::atomic<bool>& stop_on_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  // A reader that goes away is seen as an error of the write.
+  // A reader that goes away and a disk that takes no more are seen as errors of the write.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   return stop_flag;
 }
 

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The commands as a user meets them: the built program, its words, its exit status, and what it leaves on the disk.
+#include <chrono>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace footlight {
+namespace {
+
+using nlohmann::json;
+using test::footlight;
+using test::Ran;
+using test::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Names = std::vector<std::string>;
+
+constexpr const char* kVideo = FOOTLIGHT_TEST_DATA "/moving_square_40x30_12_frames_10fps.avi";
+
+/// The starter show in a folder of its own, with a word replaced.
+class StarterShow : public ::testing::Test {
+ protected:
+  StarterShow() {
+    const Ran made = footlight({"new", folder_ / "s", "--title", "Twelve"});
+    EXPECT_EQ(made.status, 0) << made.err;
+    as_made_ = files();
+  }
+  void replace(const std::string& from, const std::string& to) {
+    std::string text = folder_.read("s/show.yaml");
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    folder_.write("s/show.yaml", text.replace(at, from.size(), to));
+  }
+  /// The ring must be reached one count after the line.
+  void make_unwalkable() { replace("start: count 25", "start: count 10"); }
+  Names files() const {
+    Names out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "s")) {
+      out.push_back(entry.path().filename().string());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  TemporaryFolder folder_;
+  std::string show_ = folder_ / "s/show.yaml";
+  std::string plan_ = folder_ / "s/show.plan";
+  Names as_made_;
+};
+
+TEST(CommandLine, TellsItsVersionAndItsCommands) {
+  EXPECT_THAT(footlight({"--version"}).out, StartsWith("footlight "));
+  const Ran help = footlight({"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.err, "");
+  for (const std::string command : {"new", "check", "plan", "measure", "export"}) {
+    EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
+    const Ran one = footlight({command, "--help"});
+    EXPECT_EQ(one.status, 0);
+    EXPECT_THAT(one.out, HasSubstr("Examples:\n  footlight " + command)) << command;
+  }
+}
+
+TEST(CommandLine, WrongWordsAreInputErrors) {
+  const Ran none = footlight({});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.out, "");
+  EXPECT_EQ(none.err, "error: A subcommand is required (footlight --help tells what there is)\n");
+  const Ran typo = footlight({"plann", "show.yaml"});
+  EXPECT_EQ(typo.status, 2);
+  EXPECT_EQ(typo.err, "error: there is no command \"plann\" (did you mean \"plan\"?)\n");
+  const Ran missing = footlight({"plan"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_EQ(missing.err, "error: SHOW is required (footlight --help tells what there is)\n");
+}
+
+TEST(NewCommand, DoesNotTouchAFolderThatIsThere) {
+  const TemporaryFolder folder;
+  const Ran made = footlight({"new", folder.path().string()});
+  EXPECT_EQ(made.status, 2);
+  EXPECT_EQ(made.err, "error: '" + folder.path().string() + "' is there already (a new show wants a new folder)\n");
+  EXPECT_EQ(folder.names(), Names{});
+}
+
+TEST_F(StarterShow, ChecksWithoutAWord) {
+  for (const Ran& ran : {footlight({"check", show_}), footlight({"check", "--no-media", show_})}) {
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.err, "");
+    EXPECT_THAT(ran.out, HasSubstr(show_ + ": no errors (12 performers, 3 sections, 3 cues)"));
+  }
+  EXPECT_EQ(json::parse(footlight({"check", show_, "--json"}).out)["ok"], true);
+  EXPECT_EQ(files(), as_made_);
+}
+
+TEST_F(StarterShow, EveryErrorIsReportedWithItsPlace) {
+  replace("clearance: 0.5 m", "clearence: 0.5 m");
+  replace("tempo: 100", "tempo: 0");
+  const Ran ran = footlight({"check", show_});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(ran.err, show_ + ":11:3: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n" + show_ +
+                         ":20:16: error: music.tempo: \"0\" is out of range (1 to 1000)\n");
+  EXPECT_EQ(footlight({"plan", show_}).status, 2);
+  EXPECT_EQ(files(), as_made_);
+}
+
+TEST_F(StarterShow, AFilmThatCannotBeDecodedIsReportedAtItsSection) {
+  folder_.write("s/film.mp4", "no film");
+  replace("{cells: ring.csv}, start: count 25, hold: 8 counts",
+          "{video: film.mp4}, start: count 25, duration: 8 counts");
+  for (const char* command : {"check", "plan"}) {
+    const Ran ran = footlight({command, show_});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.err,
+              show_ + ":25:5: error: sections[1].from.video: '" + folder_ / "s/film.mp4" +
+                  "' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, GIF or "
+                  "MPEG, with a video stream)\n");
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_EQ(footlight({"check", "--no-media", show_}).status, 0);
+}
+
+TEST_F(StarterShow, PlansIntoAFileBesideTheShow) {
+  const Ran ran = footlight({"plan", show_});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "note: wrote " + plan_ + "\n");
+  EXPECT_THAT(ran.out, StartsWith("Twelve: 12 performers on 12 x 8 cells, "));
+  EXPECT_THAT(ran.out, HasSubstr("\nring "));
+  Names expected = as_made_;
+  expected.push_back("show.plan");
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(files(), expected);
+  EXPECT_EQ(footlight({"plan", show_, "--quiet"}).err, "");
+}
+
+TEST_F(StarterShow, ThePlanIsTheSameForAnyNumberOfThreads) {
+  EXPECT_EQ(footlight({"plan", show_, "-o", folder_ / "1.plan", "--threads", "1"}).status, 0);
+  EXPECT_EQ(footlight({"plan", show_, "-o", folder_ / "3.plan", "--threads", "3"}).status, 0);
+  EXPECT_EQ(folder_.read("1.plan"), folder_.read("3.plan"));
+}
+
+TEST_F(StarterShow, JsonIsAlone) {
+  const Ran plan = footlight({"plan", show_, "--json"});
+  const json summary = json::parse(plan.out);
+  EXPECT_EQ(summary["valid"], true);
+  EXPECT_EQ(summary["performers"], 12);
+  EXPECT_EQ(summary["sections"].size(), 3U);
+  EXPECT_GE(summary["min_clearance_m"], 0.5);
+  EXPECT_LE(summary["max_speed_m_s"], 1.4);
+  const json measured = json::parse(footlight({"measure", show_, "--json"}).out);
+  EXPECT_EQ(measured["valid"], true);
+  EXPECT_EQ(measured["too_close"], 0);
+  EXPECT_EQ(measured["sections"][1]["name"], "ring");
+  EXPECT_EQ(measured["min_clearance_m"], summary["min_clearance_m"]);
+}
+
+TEST_F(StarterShow, ProgressIsToldInLinesWhenAskedFor) {
+  const Ran ran = footlight({"plan", show_, "--progress"});
+  EXPECT_THAT(ran.err, HasSubstr("100%\n"));
+  EXPECT_THAT(ran.err, ::testing::Not(HasSubstr("\r")));
+}
+
+TEST_F(StarterShow, APlanIsUsedAgainWhileTheShowIsTheSame) {
+  ASSERT_EQ(footlight({"plan", show_, "-q"}).status, 0);
+  EXPECT_EQ(footlight({"measure", show_}).err, "");
+  replace("count: 12", "count: 12 ");
+  EXPECT_EQ(footlight({"measure", show_}).err,
+            "note: planning again, since the show has changed since '" + plan_ + "'\n");
+  const Ran given = footlight({"measure", show_, "--plan", plan_});
+  EXPECT_EQ(given.status, 2);
+  EXPECT_EQ(given.err,
+            "error: '" + plan_ + "' was planned from another show, or before the show was changed (plan it again)\n");
+  std::filesystem::remove(plan_);
+  EXPECT_EQ(footlight({"measure", show_}).err,
+            "note: planning, since '" + plan_ + "' is not there (footlight plan writes it)\n");
+  EXPECT_EQ(footlight({"measure", show_, "-q"}).err, "");
+}
+
+TEST_F(StarterShow, AHarmedPlanIsMadeAnewUnlessItWasAskedFor) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  folder_.write("s/show.plan", folder_.read("s/show.plan").substr(0, 5000));
+  const Ran again = footlight({"measure", show_});
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.err, StartsWith("note: planning again: cannot use '" + plan_ + "': "));
+  const Ran given = footlight({"measure", show_, "--plan", plan_});
+  EXPECT_EQ(given.status, 2);
+  EXPECT_THAT(given.err, StartsWith("error: cannot use '" + plan_ + "': "));
+}
+
+TEST_F(StarterShow, ExportsThreeFiles) {
+  const Ran ran = footlight({"export", show_, "--csv", folder_ / "csv/deep", "-q"});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_EQ(ran.out, folder_ / "csv/deep/marks.csv\n" + folder_ / "csv/deep/formations.csv\n" +
+                         folder_ / "csv/deep/stage.json\n");
+  EXPECT_EQ(json::parse(folder_.read("csv/deep/stage.json"))["valid"], true);
+  const std::string marks = folder_.read("csv/deep/marks.csv");
+  EXPECT_THAT(marks, StartsWith("performer,count,time_s,col,row,x_m,y_m,look,section\n1,1,0,"));
+  EXPECT_THAT(marks, HasSubstr("\n12,57,33.6,"));
+}
+
+TEST_F(StarterShow, DrawsAPictureOfEveryKeyFormation) {
+  const Ran ran = footlight({"plan", show_, "--pictures", folder_ / "pictures"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  for (const char* name : {"001-line-1.png", "002-ring-1.png", "003-arrow-1.png"}) {
+    EXPECT_THAT(folder_.read(std::string("pictures/") + name), StartsWith("\x89PNG")) << name;
+  }
+}
+
+TEST_F(StarterShow, WhatCannotBeWalkedIsRefusedAndWritesNothing) {
+  make_unwalkable();
+  const Ran plan = footlight({"plan", show_});
+  EXPECT_EQ(plan.status, 3);
+  EXPECT_THAT(plan.err, StartsWith(show_ + ":25:5: error: sections[1]: performer "));
+  EXPECT_THAT(plan.out, HasSubstr("\nring "));
+  EXPECT_EQ(files(), as_made_);
+  const Ran check = footlight({"check", show_});
+  EXPECT_EQ(check.status, 3);
+  EXPECT_EQ(check.err, plan.err);
+  const Ran exported = footlight({"export", show_, "--csv", folder_ / "csv", "-q"});
+  EXPECT_EQ(exported.status, 3);
+  EXPECT_EQ(exported.err, plan.err);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "csv"));
+}
+
+TEST_F(StarterShow, ARefusedPlanCanBeMeasuredAndExportedAndSaysSo) {
+  make_unwalkable();
+  const json measured = json::parse(footlight({"measure", show_, "--json"}).out);
+  EXPECT_EQ(measured["valid"], false);
+  EXPECT_GT(measured["max_speed_m_s"], 1.4);
+  const Ran exported = footlight({"export", show_, "--csv", folder_ / "csv", "--unchecked"});
+  EXPECT_EQ(exported.status, 0);
+  EXPECT_THAT(exported.err, HasSubstr("note: the plan is refused; stage.json says \"valid\": false\n"));
+  EXPECT_EQ(json::parse(folder_.read("csv/stage.json"))["valid"], false);
+}
+
+TEST_F(StarterShow, ARefusedShowLeavesAnOlderPlanAlone) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const std::string before = folder_.read("s/show.plan");
+  make_unwalkable();
+  EXPECT_EQ(footlight({"plan", show_}).status, 3);
+  EXPECT_EQ(folder_.read("s/show.plan"), before);
+}
+
+TEST_F(StarterShow, AFullDiskIsReportedAndLeavesNothing) {
+  const Ran ran = test::run_program({"sh", "-c", "ulimit -f 4; exec \"$0\" \"$@\"", FOOTLIGHT_PROGRAM, "plan", show_});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: cannot write '" + plan_ + "': File too large\n");
+  EXPECT_EQ(files(), as_made_);
+}
+
+TEST_F(StarterShow, AResultThatNobodyCanReadIsNoSuccess) {
+  const Ran ran = footlight({"plan", show_, "-q"}, "/dev/full");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: cannot write the result to stdout: No space left on device\n");
+}
+
+TEST_F(StarterShow, AFolderThatCannotBeWrittenIsNamed) {
+  const Ran ran = footlight({"plan", show_, "-o", folder_ / "no/such/x.plan"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: cannot write '" + folder_ / "no/such/x.plan" + "': No such file or directory\n");
+  const Ran csv = footlight({"export", show_, "-q", "--csv", show_});
+  EXPECT_EQ(csv.status, 2);
+  EXPECT_EQ(csv.err, "error: cannot make the folder '" + show_ + "': Not a directory\n");
+}
+
+TEST_F(StarterShow, AnInterruptionEndsLongWorkAndLeavesNothing) {
+  std::filesystem::copy_file(kVideo, folder_ / "s/film.avi");
+  replace("{cells: ring.csv}, start: count 25, hold: 8 counts",
+          "{video: film.avi}, start: count 25, duration: 8 counts");
+  as_made_ = files();
+  // A decoder that says it has begun, and then never ends.
+  const std::string decoder = folder_.write("decoder", "#!/bin/sh\n: >" + folder_ / "begun" + "\nexec sleep 1000\n");
+  chmod(decoder.c_str(), 0700);
+  setenv("FOOTLIGHT_DECODER", decoder.c_str(), 1);
+  const Ran ran = footlight({"plan", show_}, "", [&](pid_t pid) {
+    while (!std::filesystem::exists(folder_ / "begun")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    kill(pid, SIGINT);
+  });
+  unsetenv("FOOTLIGHT_DECODER");
+  EXPECT_EQ(ran.status, 130);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(ran.err, "error: interrupted while decoding '" + folder_ / "s/film.avi" + "'\n");
+  EXPECT_EQ(files(), as_made_);
+}
+
+}  // namespace
+}  // namespace footlight

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/load.hpp"
+
+#include <gtest/gtest.h>
+
+namespace footlight::app {
+namespace {
+
+constexpr const char* kVideo = FOOTLIGHT_TEST_DATA "/moving_square_40x30_12_frames_10fps.avi";
+constexpr const char* kImage = FOOTLIGHT_TEST_DATA "/block_40x30.png";
+
+Section section(const std::string& name, Source from, double start, int line) {
+  Section out;
+  out.name = name;
+  out.from = std::move(from);
+  out.start_count = start;
+  out.position = {"show.yaml", line, 5};
+  return out;
+}
+
+Source video(const std::string& path) {
+  VideoSource out;
+  out.path = path;
+  return out;
+}
+Source image(const std::string& path) {
+  ImageSource out;
+  out.path = path;
+  return out;
+}
+
+class DecodeFilms : public ::testing::Test {
+ protected:
+  Result<Films> decode() { return decode_films(session_, loaded_); }
+  std::vector<Section>& sections() { return loaded_.show.sections; }
+
+  std::atomic<bool> stop_ = false;
+  Session session_{stop_};
+  config::LoadedShow loaded_;
+};
+
+TEST_F(DecodeFilms, GivesAFilmForEachVideoAndImage) {
+  sections() = {section("a", video(kVideo), 1, 10), section("b", CellsSource{}, 100, 11),
+                section("c", image(kImage), 200, 12)};
+  const auto films = decode();
+  ASSERT_TRUE(films) << films.error().message;
+  ASSERT_EQ(films->size(), 3U);
+  EXPECT_EQ((*films)[0]->frames.size(), 12U);
+  EXPECT_FALSE((*films)[1]);
+  EXPECT_EQ((*films)[2]->frames.size(), 1U);
+  EXPECT_TRUE((*films)[2]->frames[0].at(20, 15));
+}
+
+TEST_F(DecodeFilms, AVideoWithoutADurationKeepsItsOwnLength) {
+  loaded_.show.tempo = TempoMap(120, 4);
+  sections() = {section("a", video(kVideo), 1, 10)};
+  ASSERT_TRUE(decode());
+  EXPECT_NEAR(sections()[0].duration_counts, 11 / 10.0 * 2,
+              1e-9);  // 11 steps of a tenth of a second, 2 counts a second
+}
+
+TEST_F(DecodeFilms, AGivenDurationStays) {
+  sections() = {section("a", video(kVideo), 1, 10)};
+  sections()[0].duration_counts = 64;
+  ASSERT_TRUE(decode());
+  EXPECT_EQ(sections()[0].duration_counts, 64);
+}
+
+TEST_F(DecodeFilms, AFilmThatRunsIntoTheNextSectionIsReportedThere) {
+  loaded_.show.tempo = TempoMap(120, 4);
+  sections() = {section("a", video(kVideo), 1, 10), section("b", image(kImage), 3, 11)};
+  const auto films = decode();
+  ASSERT_FALSE(films);
+  EXPECT_EQ(
+      films.error(),
+      input_error(
+          "show.yaml:11:5: error: sections[1].start: section 'b' begins at count 3, but 'a' lasts until count 3.2 at "
+          "its film's own length (start at count 3.2 or later, or give 'a' a duration)"));
+}
+
+TEST_F(DecodeFilms, EveryWrongFilmIsReportedAtItsSection) {
+  sections() = {section("a", video("/nowhere/a.mp4"), 1, 10), section("b", image("/nowhere/b.png"), 9, 12)};
+  const auto films = decode();
+  ASSERT_FALSE(films);
+  EXPECT_EQ(films.error(),
+            input_error("show.yaml:10:5: error: sections[0].from.video: cannot read '/nowhere/a.mp4': No such file or "
+                        "directory\n"
+                        "show.yaml:12:5: error: sections[1].from.image: cannot read '/nowhere/b.png': No such file or "
+                        "directory"));
+}
+
+TEST_F(DecodeFilms, AnInterruptionIsNoErrorOfTheFile) {
+  stop_ = true;
+  sections() = {section("a", video(kVideo), 1, 10)};
+  const auto films = decode();
+  ASSERT_FALSE(films);
+  EXPECT_EQ(films.error().kind, ErrorKind::interrupted);
+}
+
+TEST(TakeDurations, AreThoseOfThePlan) {
+  Show show;
+  show.tempo = TempoMap(120, 4);
+  show.sections = {section("a", video("v"), 1, 1), section("b", video("v"), 50, 2)};
+  show.sections[0].hold_counts = 2;
+  show.sections[1].duration_counts = 7;
+  Plan plan;
+  plan.sections.resize(2);
+  plan.sections[0].end = instant_at(10);  // count 21
+  take_durations(show, plan);
+  EXPECT_DOUBLE_EQ(show.sections[0].duration_counts, 18);
+  EXPECT_EQ(show.sections[1].duration_counts, 7);
+}
+
+}  // namespace
+}  // namespace footlight::app
