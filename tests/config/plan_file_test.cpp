@@ -160,7 +160,7 @@ TEST(PlanFile, TheSamePlanGivesTheSameBytes) {
 TEST(PlanFile, NoHarmedFileLoadsAsAnotherPlan) {
   const TemporaryFolder folder;
   const char* wanted = std::getenv("FOOTLIGHT_MUTATIONS");
-  const long mutations = wanted == nullptr ? 2000 : std::atol(wanted);
+  const long mutations = wanted == nullptr ? 1000 : std::atol(wanted);
   Rng rng(1);
   long refused = 0;
   long same = 0;
