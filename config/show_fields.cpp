@@ -341,7 +341,7 @@ Listing look_listing(std::string_view name, std::string_view doc, std::string_vi
 
 const Listing& looks_listing() {
   static const Listing kHere = look_listing("looks.here", "Somebody stands here now and stays.", "steady");
-  static const Listing kArrive = look_listing("looks.arrive", "Somebody is walking to this cell now.", "pulse");
+  static const Listing kArrive = look_listing("looks.arrive", "Somebody is walking to this cell now.", "steady");
   static const Listing kNext =
       look_listing("looks.next", "Somebody will walk to this cell at the next move.", "count-down");
   static const Listing kHandover = look_listing(
