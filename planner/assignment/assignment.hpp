@@ -21,6 +21,10 @@ struct Assignment {
   /// cost minus the value of the dual solution found with it: 0 for squared cost (exact integer arithmetic on lattice
   /// points), within rounding (1e-9 relative) for Euclidean cost.
   double gap = 0;
+  /// The dual solution, m^2 or m: source_value[i] + target_value[j] <= cost of every allowed pair, with equality for
+  /// the matched ones, so that the sum of both is a lower bound of any assignment's cost, and is cost - gap.
+  std::vector<double> source_value;
+  std::vector<double> target_value;
 };
 
 /// The cheapest one-to-one assignment of N sources to N targets, exact.

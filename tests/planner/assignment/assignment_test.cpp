@@ -2,8 +2,13 @@
 #include "planner/assignment/assignment.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -13,23 +18,32 @@ namespace footlight::planner {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+using Points = std::vector<Point>;
 
 double price_of(Point a, Point b, WalkCost cost) {
   return cost == WalkCost::squared ? squared_length(a - b) : distance(a, b);
 }
 
-std::vector<Point> distinct_cells(std::uint64_t seed, std::size_t count, std::uint64_t side) {
+/// Distinct cells of a square field, in random order.
+Points distinct_cells(std::uint64_t seed, std::size_t count, std::uint64_t side) {
   Rng rng(seed);
-  std::vector<Point> cells;
+  Points cells;
+  std::set<std::pair<double, double>> seen;
   while (cells.size() < count) {
     const Point p{static_cast<double>(rng.below(side)), static_cast<double>(rng.below(side))};
-    if (std::ranges::find(cells, p) == cells.end()) cells.push_back(p);
+    if (seen.emplace(p.x, p.y).second) cells.push_back(p);
   }
   return cells;
 }
 
-std::optional<double> cheapest_by_trying_all(const std::vector<Point>& a, const std::vector<Point>& b, WalkCost cost,
-                                             double longest_m) {
+Points anywhere(std::uint64_t seed, std::size_t count, double side_m) {
+  Rng rng(seed);
+  Points points(count);
+  for (Point& p : points) p = {side_m * rng.uniform(), side_m * rng.uniform()};
+  return points;
+}
+
+std::optional<double> cheapest_by_trying_all(const Points& a, const Points& b, WalkCost cost, double longest_m) {
   std::vector<std::size_t> order(a.size());
   std::iota(order.begin(), order.end(), 0U);
   std::optional<double> best;
@@ -45,25 +59,200 @@ std::optional<double> cheapest_by_trying_all(const std::vector<Point>& a, const 
   return best;
 }
 
+/// A perfect matching of allowed walks, its cost, and the proof that none is cheaper, all of it from the points alone.
+void expect_proved(const Points& a, const Points& b, WalkCost cost, double longest_m, const Assignment& found) {
+  ASSERT_EQ(found.target_of.size(), a.size());
+  ASSERT_EQ(found.source_value.size(), a.size());
+  ASSERT_EQ(found.target_value.size(), a.size());
+  std::vector<int> taken(a.size(), 0);
+  double sum = 0;
+  double dual = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_LT(found.target_of[i], a.size());
+    EXPECT_EQ(taken[found.target_of[i]]++, 0) << "two go to " << found.target_of[i];
+    EXPECT_LE(distance(a[i], b[found.target_of[i]]), longest_m);
+    sum += price_of(a[i], b[found.target_of[i]], cost);
+    dual += found.source_value[i] + found.target_value[i];
+  }
+  const double tolerance = 1e-9 * (1 + sum);
+  EXPECT_NEAR(found.cost, sum, tolerance);
+  EXPECT_NEAR(found.gap, 0, tolerance);
+  EXPECT_NEAR(dual, sum, tolerance);
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < a.size(); ++j) {
+      if (distance(a[i], b[j]) > longest_m) continue;
+      worst = std::min(worst, price_of(a[i], b[j], cost) - found.source_value[i] - found.target_value[j]);
+    }
+  }
+  EXPECT_GE(worst, -1e-9 * (1 + sum / static_cast<double>(a.size() + 1)));
+}
+
+constexpr std::array kBothCosts{WalkCost::squared, WalkCost::euclidean};
+
 TEST(Assign, EqualsTryingAllOrdersOnSmallFormations) {
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
     const std::size_t size = 1 + seed % 6;
     const auto a = distinct_cells(seed, size, 4);
     const auto b = distinct_cells(seed + 1000, size, 4);
-    for (const WalkCost cost : {WalkCost::squared, WalkCost::euclidean}) {
+    for (const WalkCost cost : kBothCosts) {
       for (const double longest_m : {kNoLimit, 2.0}) {
         const auto expected = cheapest_by_trying_all(a, b, cost, longest_m);
         const auto found = assign(a, b, cost, longest_m);
         ASSERT_EQ(found.has_value(), expected.has_value()) << seed;
         if (!expected) continue;
         EXPECT_NEAR(found->cost, *expected, 1e-9) << seed;
-        EXPECT_NEAR(found->gap, 0, 1e-9) << seed;
-        auto seen = found->target_of;
-        std::ranges::sort(seen);
-        for (std::size_t i = 0; i < size; ++i) EXPECT_EQ(seen[i], i);
+        expect_proved(a, b, cost, longest_m, *found);
       }
     }
   }
+}
+
+TEST(Assign, ProvesItselfOnFormationsOfManySizes) {
+  for (const std::size_t size : {63U, 64U, 65U, 100U, 255U, 256U, 257U, 300U, 700U}) {
+    const auto side = static_cast<std::uint64_t>(2 * std::sqrt(static_cast<double>(size))) + 1;
+    const auto a = distinct_cells(size, size, side);
+    const auto b = distinct_cells(size + 7, size, side);
+    for (const WalkCost cost : kBothCosts) {
+      const auto found = assign(a, b, cost, kNoLimit);
+      ASSERT_TRUE(found.has_value());
+      expect_proved(a, b, cost, kNoLimit, *found);
+      if (cost == WalkCost::squared) {
+        EXPECT_EQ(found->gap, 0.0);
+      }
+    }
+  }
+}
+
+TEST(Assign, EqualsTheSparseOneOverAllAllowedPairs) {
+  int infeasible = 0;
+  int feasible = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const std::size_t size = 70 + 15 * seed;
+    const auto a = distinct_cells(seed, size, 30);
+    const auto b = distinct_cells(seed + 50, size, 30);
+    for (const WalkCost cost : kBothCosts) {
+      for (const double longest_m : {3.0, 5.0, 8.0, 12.0}) {
+        std::vector<Arc> arcs;
+        for (std::uint32_t i = 0; i < size; ++i) {
+          for (std::uint32_t j = 0; j < size; ++j) {
+            if (distance(a[i], b[j]) <= longest_m) arcs.push_back({i, j, price_of(a[i], b[j], cost)});
+          }
+        }
+        const auto expected = assign_sparse(static_cast<std::uint32_t>(size), arcs);
+        const auto found = assign(a, b, cost, longest_m);
+        ASSERT_EQ(found.has_value(), expected.has_value()) << size << ' ' << longest_m;
+        if (!found) {
+          ++infeasible;
+          continue;
+        }
+        ++feasible;
+        EXPECT_NEAR(found->cost, expected->cost, 1e-9 * expected->cost);
+        expect_proved(a, b, cost, longest_m, *found);
+        expect_proved(a, b, cost, longest_m, *expected);
+      }
+    }
+  }
+  EXPECT_GT(infeasible, 5);
+  EXPECT_GT(feasible, 20);
+}
+
+TEST(Assign, TakesPointsThatLieOnNoGrid) {
+  for (const std::size_t size : {5U, 90U, 400U}) {
+    const auto a = anywhere(size, size, 40);
+    const auto b = anywhere(size + 1, size, 40);
+    for (const WalkCost cost : kBothCosts) {
+      const auto found = assign(a, b, cost, kNoLimit);
+      ASSERT_TRUE(found.has_value());
+      expect_proved(a, b, cost, kNoLimit, *found);
+    }
+  }
+}
+
+TEST(Assign, IsExactOnEveryKindOfGrid) {
+  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
+    const auto grid = Grid::make(kind, 40, 40, 0.73);
+    ASSERT_TRUE(grid.has_value());
+    Points a;
+    Points b;
+    for (const Point p : distinct_cells(3, 350, 40)) {
+      a.push_back(grid.value().centre(Cell{static_cast<int>(p.x), static_cast<int>(p.y)}));
+    }
+    for (const Point p : distinct_cells(4, 350, 40)) {
+      b.push_back(grid.value().centre(Cell{static_cast<int>(p.x), static_cast<int>(p.y)}));
+    }
+    const auto found = assign(a, b, WalkCost::squared, kNoLimit);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->gap, 0.0) << to_text(kind);
+    expect_proved(a, b, WalkCost::squared, kNoLimit, *found);
+  }
+}
+
+TEST(Assign, AnswersForNobodyAndForOne) {
+  const auto nobody = assign({}, {}, WalkCost::squared, kNoLimit);
+  ASSERT_TRUE(nobody.has_value());
+  EXPECT_TRUE(nobody->target_of.empty());
+  EXPECT_EQ(nobody->cost, 0);
+  const Points a{{1, 1}};
+  const Points b{{4, 5}};
+  EXPECT_EQ(assign(a, b, WalkCost::squared, kNoLimit)->cost, 25);
+  EXPECT_EQ(assign(a, b, WalkCost::euclidean, 5.0)->cost, 5);
+  EXPECT_FALSE(assign(a, b, WalkCost::euclidean, 4.9).has_value());
+}
+
+TEST(Assign, LeavesIdenticalFormationsAlone) {
+  const auto a = distinct_cells(1, 500, 40);
+  for (const WalkCost cost : kBothCosts) {
+    for (const double longest_m : {kNoLimit, 0.0}) {
+      const auto found = assign(a, a, cost, longest_m);
+      ASSERT_TRUE(found.has_value());
+      EXPECT_EQ(found->cost, 0);
+      for (std::uint32_t i = 0; i < a.size(); ++i) EXPECT_EQ(found->target_of[i], i);
+    }
+  }
+}
+
+TEST(Assign, WalksAlongALineInOrder) {
+  Points a;
+  Points b;
+  for (int i = 0; i < 200; ++i) {
+    a.push_back({2.0 * i, 5});
+    b.push_back({1000.0 - 3 * i, 5});
+  }
+  const auto found = assign(a, b, WalkCost::squared, kNoLimit);
+  ASSERT_TRUE(found.has_value());
+  for (std::uint32_t i = 0; i < 200; ++i) EXPECT_EQ(found->target_of[i], 199 - i);
+  const auto shortest = assign(a, b, WalkCost::euclidean, kNoLimit);
+  ASSERT_TRUE(shortest.has_value());
+  expect_proved(a, b, WalkCost::euclidean, kNoLimit, *shortest);
+}
+
+TEST(Assign, KeepsFarClustersApart) {
+  auto a = distinct_cells(1, 100, 15);
+  auto b = distinct_cells(2, 100, 15);
+  for (const Point p : distinct_cells(3, 100, 15)) a.push_back(p + Point{9e4, 8e4});
+  for (const Point p : distinct_cells(4, 100, 15)) b.push_back(p + Point{9e4, 8e4});
+  for (const WalkCost cost : kBothCosts) {
+    const auto found = assign(a, b, cost, kNoLimit);
+    ASSERT_TRUE(found.has_value());
+    expect_proved(a, b, cost, kNoLimit, *found);
+    for (std::uint32_t i = 0; i < 200; ++i) EXPECT_EQ(found->target_of[i] < 100, i < 100);
+  }
+}
+
+TEST(AssignSparse, RefusesTwoWhoHaveOneTarget) {
+  const std::vector<Arc> arcs{{0, 0, 1}, {0, 1, 1}, {1, 2, 1}, {2, 2, 5}};
+  EXPECT_FALSE(assign_sparse(3, arcs).has_value());
+  EXPECT_FALSE(assign_sparse(2, std::vector<Arc>{{0, 0, 1}}).has_value());
+}
+
+TEST(AssignSparse, TakesCostsOfAnySignAndSize) {
+  const std::vector<Arc> arcs{{0, 0, -5}, {0, 1, 1e6}, {1, 0, -1e6}, {1, 1, 2.5}};
+  const auto found = assign_sparse(2, arcs);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->cost, -2.5, 1e-9);
+  EXPECT_EQ(found->target_of, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_TRUE(assign_sparse(0, {}).has_value());
 }
 
 }  // namespace

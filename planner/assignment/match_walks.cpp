@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/assignment/match_walks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/check.hpp"
+#include "planner/assignment/dense.hpp"
+#include "planner/assignment/phases.hpp"
+#include "planner/assignment/price_tree.hpp"
+#include "planner/assignment/walk_auction.hpp"
+
+namespace footlight::planner::assignment {
+namespace {
+
+constexpr std::uint32_t kDenseSize = 64;
+constexpr std::size_t kMostCandidates = 48;
+constexpr std::uint64_t kMostBids = 60;  ///< a source, in one phase of an auction
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Matching match_all_pairs(const Walks& walks) {
+  const std::uint32_t size = walks.size();
+  std::vector<Value> costs;
+  costs.reserve(static_cast<std::size_t>(size) * size);
+  for (std::uint32_t i = 0; i < size; ++i) {
+    for (std::uint32_t s = 0; s < size; ++s) {
+      costs.push_back(!walks.limited() || walks.allowed(i, s) ? walks.cost(i, s) : kFar);
+    }
+  }
+  return match_dense(size, costs);
+}
+
+/// The tree over the targets of some walks, priced in integers.
+class PricedTargets {
+ public:
+  explicit PricedTargets(const Walks& walks)
+      : walks_(walks), tree_(walks.targets().search_x, walks.targets().search_y, walks.metric()) {}
+
+  void fit(std::span<const Value> prices, std::span<const std::uint32_t> without = {}) {
+    shown_.resize(prices.size());
+    base_ = *std::ranges::min_element(prices);
+    for (std::size_t s = 0; s < prices.size(); ++s) {
+      shown_[s] = static_cast<float>(static_cast<double>(prices[s] - base_) / walks_.scale());
+    }
+    for (const std::uint32_t s : without) shown_[s] = kInfinity;
+    tree_.fit(shown_);
+  }
+
+  [[nodiscard]] PriceTree& tree() { return tree_; }
+  /// The tree's prices, which an auction has raised.
+  [[nodiscard]] std::vector<Value> prices() const {
+    std::vector<Value> prices(walks_.size());
+    for (std::uint32_t s = 0; s < walks_.size(); ++s) {
+      prices[s] = base_ + static_cast<Value>(static_cast<double>(tree_.price(s)) * walks_.scale() + 0.5);
+    }
+    return prices;
+  }
+
+  /// Candidates within `margin` of the best of a source, at most kMostCandidates and those the best.
+  std::span<const PriceTree::Hit> best(std::uint32_t source, Value margin, std::uint32_t guess = kNobody) {
+    const float x = walks_.sources().search_x[source];
+    const float y = walks_.sources().search_y[source];
+    const float bound = guess == kNobody ? kInfinity : tree_.value(x, y, guess) + to_search(margin) + tree_.rounding();
+    tree_.collect({x, y, bound, to_search(margin), walks_.reach()}, hits_);
+    if (hits_.size() > kMostCandidates) {
+      std::ranges::nth_element(hits_, hits_.begin() + kMostCandidates, [](const auto& a, const auto& b) {
+        return a.value < b.value || (a.value == b.value && a.target < b.target);
+      });
+      hits_.resize(kMostCandidates);
+    }
+    return hits_;
+  }
+
+  /// All targets of less than `value`, and some that are a little above.
+  std::span<const PriceTree::Hit> below(std::uint32_t source, Value value) {
+    const float bound = to_search(value - base_) - to_search(1) / 2 + tree_.rounding();
+    tree_.collect(
+        {walks_.sources().search_x[source], walks_.sources().search_y[source], bound, kInfinity, walks_.reach()},
+        hits_);
+    return hits_;
+  }
+
+  [[nodiscard]] float to_search(Value value) const {
+    return static_cast<float>(static_cast<double>(value) / walks_.scale());
+  }
+
+ private:
+  const Walks& walks_;
+  PriceTree tree_;
+  std::vector<float> shown_;
+  Value base_ = 0;
+  std::vector<PriceTree::Hit> hits_;
+};
+
+ArcRows candidates(const Walks& walks, PricedTargets& targets, const Matching& matching, Value margin) {
+  ArcRows rows;
+  rows.first.reserve(walks.size() + 1);
+  for (std::uint32_t i = 0; i < walks.size(); ++i) {
+    std::uint32_t kept = matching.target_of[i];
+    for (const auto& hit : targets.best(i, margin, matching.target_of[i])) {
+      if (walks.limited() && !walks.allowed(i, hit.target)) continue;
+      rows.add(hit.target, walks.cost(i, hit.target));
+      if (hit.target == kept) kept = kNobody;
+    }
+    if (kept != kNobody && (!walks.limited() || walks.allowed(i, kept))) rows.add(kept, walks.cost(i, kept));
+    rows.close_row();
+  }
+  return rows;
+}
+
+/// Prices of a sample of the targets, carried over to all: what its own source would pay for the neighbour instead.
+std::vector<Value> extend(const Walks& walks, const Walks& coarse, const Matching& sample) {
+  std::vector<Value> prices(walks.size());
+  for (std::uint32_t s = 0; s < walks.size(); ++s) {
+    const std::uint32_t near = std::min(s / 4, coarse.size() - 1);
+    const std::uint32_t source = sample.source_of[near];
+    prices[s] = sample.price[near];
+    if (source != kNobody) prices[s] += coarse.cost(source, near) - walks.cost(source * 4, s);
+  }
+  return prices;
+}
+
+Matching auction(const Walks& walks, PricedTargets& targets, std::span<const double> steps, double margin) {
+  const float spacing = targets.to_search(walks.spacing());
+  WalkAuction auction(walks, targets.tree(), static_cast<float>(margin) * spacing);
+  for (const double step : steps) {
+    const bool sold_out =
+        auction.hold(std::max(static_cast<float>(step) * spacing, targets.tree().rounding()), kMostBids * walks.size());
+    if (!sold_out) break;  // who is left is the exact method's business
+  }
+  return {auction.target_of(), auction.source_of(), targets.prices(), {}};
+}
+
+/// Auction prices of ever finer samples; the finest is left to the caller.
+Matching sample_match(const Walks& walks) {
+  if (walks.size() <= kDenseSize) return match_all_pairs(walks);
+  const Walks coarse = walks.every_fourth();
+  PricedTargets targets(walks);
+  targets.fit(extend(walks, coarse, sample_match(coarse)));
+  constexpr std::array<double, 2> steps{4, 0.5};
+  return auction(walks, targets, steps, 8);
+}
+
+/// Targets outside of the reached ones, for everybody who was reached.
+std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets, const Matching& matching,
+                                      const Phases& phases) {
+  std::vector<std::uint32_t> sources(phases.reached_sources().begin(), phases.reached_sources().end());
+  std::ranges::sort(sources);
+  targets.fit(matching.price, phases.reached_targets());
+  std::vector<ArcRows::NewArc> arcs;
+  for (const std::uint32_t i : sources) {
+    for (const auto& hit : targets.best(i, 4 * walks.spacing())) {
+      if (hit.value == kInfinity) continue;
+      if (!walks.limited() || walks.allowed(i, hit.target)) arcs.push_back({i, hit.target, walks.cost(i, hit.target)});
+    }
+  }
+  return arcs;
+}
+
+/// Prices every allowed walk; those that would undercut the dual solution.
+std::vector<ArcRows::NewArc> arcs_that_undercut(const Walks& walks, PricedTargets& targets, const Matching& matching) {
+  targets.fit(matching.price);
+  std::vector<ArcRows::NewArc> arcs;
+  for (std::uint32_t i = 0; i < walks.size(); ++i) {
+    for (const auto& hit : targets.below(i, matching.value[i])) {
+      const Value cost = walks.cost(i, hit.target);
+      if (cost + matching.price[hit.target] >= matching.value[i]) continue;
+      if (!walks.limited() || walks.allowed(i, hit.target)) arcs.push_back({i, hit.target, cost});
+    }
+  }
+  return arcs;
+}
+
+}  // namespace
+
+std::optional<Matching> match_walks(const Walks& walks) {
+  if (walks.size() <= kDenseSize) {
+    Matching matching = match_all_pairs(walks);
+    if (std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) return std::nullopt;
+    return matching;
+  }
+  const Walks coarse = walks.every_fourth();
+  PricedTargets targets(walks);
+  targets.fit(extend(walks, coarse, sample_match(coarse)));
+  const std::vector<double> steps =
+      walks.metric() == WalkCost::squared ? std::vector<double>{2, 1} : std::vector<double>{.5, .125, .032, .008};
+  Matching matching = auction(walks, targets, steps, 8);
+  targets.fit(matching.price);
+  ArcRows rows = candidates(walks, targets, matching,
+                            walks.metric() == WalkCost::squared ? 4 * walks.spacing() : walks.spacing() / 20);
+  Phases phases(rows, matching, walks.on_lattice());
+  phases.tighten();
+  while (true) {
+    while (!phases.run()) {
+      const auto arcs = arcs_out(walks, targets, matching, phases);
+      if (arcs.empty()) return std::nullopt;
+      phases.add(arcs);
+    }
+    const auto arcs = arcs_that_undercut(walks, targets, matching);
+    if (arcs.empty()) return matching;
+    phases.add(arcs);
+  }
+}
+
+}  // namespace footlight::planner::assignment

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "planner/assignment/arc_rows.hpp"
+#include "planner/assignment/walks.hpp"
+
+namespace footlight::planner::assignment {
+
+/// The cheapest perfect matching of the walks and a dual solution that proves it: cost + price - value >= 0 for every
+/// allowed walk (all of them priced, not only those that were candidates) and = 0 for the matched ones, in integers.
+/// @return nothing when no perfect matching of allowed walks exists
+[[nodiscard]] std::optional<Matching> match_walks(const Walks& walks);
+
+}  // namespace footlight::planner::assignment
