@@ -5,22 +5,27 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <utility>
 
 #include "core/check.hpp"
 #include "planner/assignment/auction.hpp"
+#include "planner/assignment/kd_order.hpp"
 #include "planner/assignment/match_walks.hpp"
 #include "planner/assignment/phases.hpp"
+#include "planner/assignment/price_tree.hpp"
 
 namespace footlight::planner {
 namespace {
 
 using assignment::ArcRows;
 using assignment::hold_auction;
-using assignment::kNobody;
+using assignment::kd_order;
 using assignment::match_walks;
 using assignment::Matching;
 using assignment::Phases;
+using assignment::PriceTree;
 using assignment::Value;
 using assignment::Walks;
 
@@ -28,15 +33,11 @@ double walk_cost(Point a, Point b, WalkCost cost) {
   return cost == WalkCost::squared ? squared_length(a - b) : distance(a, b);
 }
 
-}  // namespace
-
-std::optional<Assignment> assign(std::span<const Point> sources, std::span<const Point> targets, WalkCost cost,
-                                 double longest_m) {
-  FL_CHECK(sources.size() == targets.size());
-  FL_CHECK(longest_m >= 0);
-  const Walks walks(sources, targets, cost, longest_m);
+std::optional<Assignment> assign_all(std::span<const Point> sources, std::span<const Point> targets, WalkCost cost,
+                                     double longest_m) {
   Assignment result;
-  if (walks.size() == 0) return result;
+  if (sources.empty()) return result;
+  const Walks walks(sources, targets, cost, longest_m);
   const auto matching = match_walks(walks);
   if (!matching) return std::nullopt;
   const std::uint32_t size = walks.size();
@@ -63,6 +64,136 @@ std::optional<Assignment> assign(std::span<const Point> sources, std::span<const
   return result;
 }
 
+/// Indices into both sides of the points that both have, and of the others.
+struct Common {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> both;
+  std::vector<std::uint32_t> sources, targets;
+};
+
+std::vector<std::uint32_t> in_order(std::span<const Point> points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(points[i].x, points[i].y); });
+  return order;
+}
+
+Common find_common(std::span<const Point> sources, std::span<const Point> targets) {
+  const auto source_order = in_order(sources);
+  const auto target_order = in_order(targets);
+  const auto key = [](Point p) { return std::pair(p.x, p.y); };
+  Common common;
+  std::size_t t = 0;
+  for (const std::uint32_t i : source_order) {
+    for (; t < target_order.size() && key(targets[target_order[t]]) < key(sources[i]); ++t) {
+      common.targets.push_back(target_order[t]);
+    }
+    if (t < target_order.size() && targets[target_order[t]] == sources[i]) {
+      common.both.emplace_back(i, target_order[t++]);
+    } else {
+      common.sources.push_back(i);
+    }
+  }
+  common.targets.insert(common.targets.end(), target_order.begin() + static_cast<std::ptrdiff_t>(t),
+                        target_order.end());
+  return common;
+}
+
+/// phi(z) = min over targets j of |z - j| - value_j, the potential of which a dual solution of a metric cost is made.
+class Potential {
+ public:
+  Potential(std::span<const Point> targets, std::span<const double> values)
+      : order_(kd_order(targets)), targets_(targets), values_(values), tree_(make_tree()) {}
+
+  double operator()(Point z) {
+    const Point at = z - zero_;
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    // No margin: what rounding leaves undecided is decided below.
+    tree_->collect({static_cast<float>(at.x), static_cast<float>(at.y), kInfinity, 0, kInfinity}, hits_);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& hit : hits_) {
+      const std::uint32_t target = order_[hit.target];
+      least = std::min(least, distance(z, targets_[target]) - values_[target]);
+    }
+    return least;
+  }
+
+ private:
+  std::unique_ptr<PriceTree> make_tree() {
+    zero_ = targets_.empty() ? Point{} : targets_[order_[order_.size() / 2]];
+    std::vector<float> x;
+    std::vector<float> y;
+    std::vector<float> price;
+    for (const std::uint32_t target : order_) {
+      x.push_back(static_cast<float>(targets_[target].x - zero_.x));
+      y.push_back(static_cast<float>(targets_[target].y - zero_.y));
+      price.push_back(static_cast<float>(-values_[target]));
+    }
+    auto tree = std::make_unique<PriceTree>(x, y, WalkCost::euclidean);
+    tree->fit(price);
+    return tree;
+  }
+
+  std::vector<std::uint32_t> order_;
+  std::span<const Point> targets_;
+  std::span<const double> values_;
+  Point zero_;
+  std::unique_ptr<PriceTree> tree_;
+  std::vector<PriceTree::Hit> hits_;
+};
+
+/// By the triangle inequality an exchange that lets everybody stay who stands on a target never costs distance.
+Assignment assign_where_common_points_stay(std::span<const Point> sources, std::span<const Point> targets) {
+  const Common common = find_common(sources, targets);
+  std::vector<Point> from;
+  std::vector<Point> to;
+  for (const std::uint32_t i : common.sources) from.push_back(sources[i]);
+  for (const std::uint32_t j : common.targets) to.push_back(targets[j]);
+  const auto rest = assign_all(from, to, WalkCost::euclidean, std::numeric_limits<double>::infinity());
+  FL_CHECK(rest.has_value());
+  Assignment result;
+  result.cost = rest->cost;
+  result.gap = rest->gap;
+  result.target_of.resize(sources.size());
+  result.source_value.assign(sources.size(), 0);
+  result.target_value.assign(sources.size(), 0);
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    result.target_of[common.sources[k]] = common.targets[rest->target_of[k]];
+    result.source_value[common.sources[k]] = rest->source_value[k];
+    result.target_value[common.targets[k]] = rest->target_value[k];
+  }
+  for (const auto& [i, j] : common.both) result.target_of[i] = j;
+  if (from.empty()) return result;
+  Potential potential(to, rest->target_value);
+  for (const auto& [i, j] : common.both) {
+    result.source_value[i] = potential(sources[i]);
+    result.target_value[j] = -result.source_value[i];
+  }
+  return result;
+}
+
+double longest_walk(std::span<const Point> sources, std::span<const Point> targets,
+                    std::span<const std::uint32_t> target_of) {
+  double longest = 0;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    longest = std::max(longest, distance(sources[i], targets[target_of[i]]));
+  }
+  return longest;
+}
+
+}  // namespace
+
+std::optional<Assignment> assign(std::span<const Point> sources, std::span<const Point> targets, WalkCost cost,
+                                 double longest_m) {
+  FL_CHECK(sources.size() == targets.size());
+  FL_CHECK(longest_m >= 0);
+  if (cost == WalkCost::euclidean) {
+    // Without a longest walk whoever stands on a target may stay there, and if nobody walks too far then, that was it.
+    Assignment free = assign_where_common_points_stay(sources, targets);
+    if (longest_walk(sources, targets, free.target_of) <= longest_m) return free;
+  }
+  return assign_all(sources, targets, cost, longest_m);
+}
+
 std::optional<Assignment> assign_sparse(std::uint32_t size, std::span<const Arc> arcs) {
   double widest = 0;
   for (std::size_t e = 0; e < arcs.size(); ++e) {
@@ -82,7 +213,7 @@ std::optional<Assignment> assign_sparse(std::uint32_t size, std::span<const Arc>
   }
   Matching matching;
   matching.price.assign(size, 0);
-  matching.target_of.assign(size, kNobody);
+  matching.target_of.assign(size, assignment::kNobody);
   const auto most = static_cast<Value>(widest * scale);
   for (Value step = most / 8; step > most / 4096; step /= 5)
     hold_auction(rows, std::max<Value>(step, 1), 10ULL * size, matching);

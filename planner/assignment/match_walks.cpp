@@ -81,6 +81,14 @@ class PricedTargets {
     return hits_;
   }
 
+  /// All targets that are not too far.
+  std::span<const PriceTree::Hit> within_reach(std::uint32_t source) {
+    tree_.collect(
+        {walks_.sources().search_x[source], walks_.sources().search_y[source], kInfinity, kInfinity, walks_.reach()},
+        hits_);
+    return hits_;
+  }
+
   [[nodiscard]] float to_search(Value value) const {
     return static_cast<float>(static_cast<double>(value) / walks_.scale());
   }
@@ -142,6 +150,30 @@ Matching sample_match(const Walks& walks) {
   return auction(walks, targets, steps, 8);
 }
 
+/// Every allowed walk.
+ArcRows all_allowed(const Walks& walks, PricedTargets& targets) {
+  ArcRows rows;
+  rows.first.reserve(walks.size() + 1);
+  for (std::uint32_t i = 0; i < walks.size(); ++i) {
+    for (const auto& hit : targets.within_reach(i)) {
+      if (walks.allowed(i, hit.target)) rows.add(hit.target, walks.cost(i, hit.target));
+    }
+    rows.close_row();
+  }
+  return rows;
+}
+
+/// Whether everybody can get a target at all: a largest matching, by phases without costs.
+bool has_perfect_matching(const ArcRows& rows) {
+  ArcRows free_of_charge{rows.first, rows.target, std::vector<Value>(rows.cost.size(), 0)};
+  Matching matching;
+  matching.price.assign(rows.size(), 0);
+  matching.target_of.assign(rows.size(), kNobody);
+  Phases phases(free_of_charge, matching, true);
+  phases.tighten();
+  return phases.run();
+}
+
 /// Targets outside of the reached ones, for everybody who was reached.
 std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets, const Matching& matching,
                                       const Phases& phases) {
@@ -172,6 +204,35 @@ std::vector<ArcRows::NewArc> arcs_that_undercut(const Walks& walks, PricedTarget
   return arcs;
 }
 
+std::optional<Matching> finish_with_all(const Walks& walks, PricedTargets& targets, Matching matching);
+
+/// From prices and a matching that are nearly right to those that are.
+/// @param complete rows hold every allowed walk, so that what is cheapest among them is cheapest
+std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows,
+                               bool complete) {
+  Phases phases(rows, matching, walks.on_lattice());
+  phases.tighten();
+  while (true) {
+    while (!phases.run()) {
+      if (complete) return std::nullopt;
+      if (walks.limited()) return finish_with_all(walks, targets, std::move(matching));
+      phases.add(arcs_out(walks, targets, matching, phases));
+    }
+    if (complete) return matching;
+    const auto arcs = arcs_that_undercut(walks, targets, matching);
+    if (arcs.empty()) return matching;
+    phases.add(arcs);
+  }
+}
+
+/// Where walks are so short that candidates do not do: whether there is any matching, and then the cheapest.
+std::optional<Matching> finish_with_all(const Walks& walks, PricedTargets& targets, Matching matching) {
+  targets.fit(matching.price);
+  ArcRows rows = all_allowed(walks, targets);
+  if (!has_perfect_matching(rows)) return std::nullopt;
+  return finish(walks, targets, std::move(matching), std::move(rows), true);
+}
+
 }  // namespace
 
 std::optional<Matching> match_walks(const Walks& walks) {
@@ -184,23 +245,15 @@ std::optional<Matching> match_walks(const Walks& walks) {
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
   const std::vector<double> steps =
-      walks.metric() == WalkCost::squared ? std::vector<double>{2, 1} : std::vector<double>{.5, .125, .032, .008};
+      walks.metric() == WalkCost::squared ? std::vector<double>{2, 1} : std::vector<double>{.5, .125, .032, .008, .002};
   Matching matching = auction(walks, targets, steps, 8);
   targets.fit(matching.price);
-  ArcRows rows = candidates(walks, targets, matching,
-                            walks.metric() == WalkCost::squared ? 4 * walks.spacing() : walks.spacing() / 20);
-  Phases phases(rows, matching, walks.on_lattice());
-  phases.tighten();
-  while (true) {
-    while (!phases.run()) {
-      const auto arcs = arcs_out(walks, targets, matching, phases);
-      if (arcs.empty()) return std::nullopt;
-      phases.add(arcs);
-    }
-    const auto arcs = arcs_that_undercut(walks, targets, matching);
-    if (arcs.empty()) return matching;
-    phases.add(arcs);
+  if (walks.limited() && std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) {
+    return finish_with_all(walks, targets, std::move(matching));
   }
+  ArcRows rows = candidates(walks, targets, matching,
+                            walks.metric() == WalkCost::squared ? 4 * walks.spacing() : walks.spacing() / 50);
+  return finish(walks, targets, std::move(matching), std::move(rows), false);
 }
 
 }  // namespace footlight::planner::assignment
