@@ -63,7 +63,8 @@ Approach closest_approach(const Walk& a, const Walk& b, double first, double las
   return {length(start + share * change), share};
 }
 
-std::vector<NearPair> near_pairs(std::span<const Walk> walks, double reach_m) {
+std::vector<NearPair> near_pairs(std::span<const Walk> walks, double reach_m, std::span<const char> among) {
+  const auto wanted = [&](std::uint32_t i) { return among.empty() || among[i] != 0; };
   std::vector<NearPair> pairs;
   if (walks.size() < 2) return pairs;
   double longest = 0;
@@ -80,10 +81,12 @@ std::vector<NearPair> near_pairs(std::span<const Walk> walks, double reach_m) {
     }
     const Buckets buckets(middle, side);
     for (std::uint32_t a = 0; a < walks.size(); ++a) {
+      if (!wanted(a)) continue;
       buckets.visit_around(middle[a], [&](std::uint32_t b) {
-        if (b <= a || squared_length(middle[a] - middle[b]) > side * side) return;
+        const bool seen_from_b = b <= a && wanted(b);
+        if (seen_from_b || squared_length(middle[a] - middle[b]) > side * side) return;
         const Approach approach = closest_approach(walks[a], walks[b], first, last);
-        if (approach.distance_m < reach_m) pairs.push_back({a, b, approach});
+        if (approach.distance_m < reach_m) pairs.push_back({std::min(a, b), std::max(a, b), approach});
       });
     }
   }

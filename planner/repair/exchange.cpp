@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner/repair/exchange.hpp"
 
+#include <algorithm>
+
 #include "planner/repair/closest_approach.hpp"
 
 namespace footlight::planner {
@@ -9,10 +11,14 @@ Exchanged exchange(std::span<const Point> sources, std::span<const Point> target
                    std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk) {
   Exchanged done;
   std::vector<Walk> walks(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) walks[i] = {sources[i], targets[target_of[i]]};
+  // Only who walks elsewhere than in the round before can have new conflicts.
+  std::vector<char> changed(sources.size(), 1);
   for (;;) {
-    for (std::size_t i = 0; i < sources.size(); ++i) walks[i] = {sources[i], targets[target_of[i]]};
     int exchanged = 0;
-    for (const NearPair& pair : near_pairs(walks, reach_m)) {
+    const auto pairs = near_pairs(walks, reach_m, changed);
+    std::fill(changed.begin(), changed.end(), char{0});
+    for (const NearPair& pair : pairs) {
       Walk& a = walks[pair.a];
       Walk& b = walks[pair.b];
       const double product = dot(a.from - b.from, a.to - b.to);
@@ -20,6 +26,7 @@ Exchanged exchange(std::span<const Point> sources, std::span<const Point> target
       if (!may_walk(a.from, b.to) || !may_walk(b.from, a.to)) continue;
       std::swap(a.to, b.to);
       std::swap(target_of[pair.a], target_of[pair.b]);
+      changed[pair.a] = changed[pair.b] = 1;
       done.squares_saved_m2 += -2 * product;
       ++exchanged;
     }

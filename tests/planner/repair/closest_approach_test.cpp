@@ -55,6 +55,22 @@ TEST(NearPairs, AreTheSameAsByLookingAtAll) {
   });
 }
 
+TEST(NearPairs, CanBeLimitedToThoseOfSomePeople) {
+  rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    const auto walks = random_walks(rng, 2 + rng.below(40), 8, 6);
+    std::vector<char> among;
+    for (std::size_t i = 0; i < walks.size(); ++i) among.push_back(rng.below(3) == 0 ? 1 : 0);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+    for (const NearPair& pair : near_pairs(walks, 1.0)) {
+      if (among[pair.a] != 0 || among[pair.b] != 0) expected.emplace_back(pair.a, pair.b);
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (const NearPair& pair : near_pairs(walks, 1.0, among)) found.emplace_back(pair.a, pair.b);
+    RC_ASSERT(found == expected);
+  });
+}
+
 TEST(NearestPair, FindsTheNearestHoweverFarApart) {
   const std::vector<Walk> walks{{{0, 0}, {0, 0}}, {{30, 0}, {20, 0}}, {{90, 0}, {90, 1}}};
   const NearPair pair = nearest_pair(walks, 1.0);
