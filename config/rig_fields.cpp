@@ -75,7 +75,7 @@ const Listing& floor_listing() {
           {.key = "nodes_per_bus",
            .type = Type::integer,
            .doc = "Most nodes on one bus.",
-           .otherwise = "what carries well: CAN 126, Modbus and serial 28",
+           .otherwise = "what carries well: CAN 126, serial 28, Modbus 16",
            .range = {1, 247}},
           {.key = "channels_per_node",
            .type = Type::integer,

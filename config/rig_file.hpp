@@ -22,7 +22,8 @@ namespace footlight::config {
 /// wearable of the performers. O(cells)
 [[nodiscard]] Rig make_simulated_rig(const Show& show);
 
-/// The most nodes that a bus carries well: CAN 126, Modbus and serial 28 (1,792 lamps switch within half a second).
+/// The most nodes that a bus carries well: CAN 126, serial 28, Modbus 16: they switch within half a second, receipts
+/// included.
 [[nodiscard]] int nodes_that_carry_well(BusKind kind);
 [[nodiscard]] int last_address(BusKind kind);
 /// Nodes `first_address`.. on each of `buses` for all `lamps` in their order, each bus a share as its capacity is.

@@ -61,7 +61,10 @@ Bus simulated_bus(BusKind kind, int round) {
 
 }  // namespace
 
-int nodes_that_carry_well(BusKind kind) { return kind == BusKind::can ? 126 : 28; }
+int nodes_that_carry_well(BusKind kind) {
+  if (kind == BusKind::can) return 126;
+  return kind == BusKind::serial ? 28 : 16;  // Modbus answers take their time
+}
 
 int last_address(BusKind kind) {
   switch (kind) {

@@ -90,9 +90,10 @@ Error over_budget(const std::vector<BusNeed>& needs, const CueSchedule& schedule
       worst->changed, ms(worst->preloads), worst->verified, ms(worst->receipts), ms(worst->latch), ms(worst->needed()),
       ms(worst->available), ms(worst->allowed()), kBusReserve * 100, misfits, needs.size());
   diagnostic.hint = fmt::format(
-      "share its nodes among {} buses, or raise the bit rate about {:.1f} times, or leave {:.2f} "
+      "share its nodes among {} buses, or raise the bit rate, which does not shorten silences and turnarounds, or "
+      "leave {:.2f} "
       "counts between these switches instead of {:.2f}",
-      static_cast<int>(std::ceil(times)), times,
+      static_cast<int>(std::ceil(times)),
       tempo.count_at(due.time) - tempo.count_at(due.time - seconds(ms(worst->needed()) / 1e3 / (1 - kBusReserve))),
       tempo.count_at(due.time) - tempo.count_at(due.time - worst->available));
   return refusal(to_text(diagnostic));

@@ -160,10 +160,8 @@ void BusLoop::switch_over(bool latched) noexcept {
       node.verify = false;
     } else if (!can_.readback) {
       if (latched && receipted) on_confirmed(node);
-    } else if (latched && can_.pushes_status) {
-      node.verify = true;
     } else {
-      node.verify = latched && offered && !node.right;
+      node.verify = latched && !node.right && (offered || can_.pushes_status);
     }
   }
 }
@@ -241,7 +239,7 @@ void BusLoop::on_miss(NodeState& node) noexcept {
   ++counters_.misses;
   node.in_flight = false;
   if (can_.pushes_status) {
-    node.right = false;
+    // Unconfirmed: it gets preload and latch again. Who was right before has lost an answer, no more.
     node.verify = false;
   } else if (node.offered != next_ || node.pending == next_) {
     node.verify = can_.readback;  // a question was missed: ask again at once

@@ -145,7 +145,7 @@ bool BusLoop::repair() noexcept {
     const bool repaired = node.pending == current_ && !node.right;
     if (repaired) node.pending = kNone;
     if (repaired && !can_.readback) on_confirmed(node);
-    node.verify = can_.readback && !node.quarantined && (node.verify || repaired || can_.pushes_status);
+    node.verify = can_.readback && !node.quarantined && !node.right && (node.verify || repaired || can_.pushes_status);
   }
   repeats_ = can_.sequenced_latch ? 1 : 0;
   return true;
@@ -249,7 +249,7 @@ bool BusLoop::refresh() noexcept {
     }
     if (!latch_current()) return false;
     refresh_at_ = now_ + kSyncPoll;
-    for (NodeState& node : nodes_) node.verify = !node.quarantined;
+    for (NodeState& node : nodes_) node.verify = !node.quarantined && !node.right;
     return true;
   }
   refresh_cursor_ = (refresh_cursor_ + 1) % nodes_.size();

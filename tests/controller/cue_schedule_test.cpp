@@ -229,7 +229,8 @@ TEST(BusBudget, ABusThatCannotCarryASwitchIsRefusedWithTheArithmetic) {
       "rig.yaml:3:7: error: buses.bus1: the serial bus at 115200 bit/s cannot carry switch 5 \"s1/3\" (count 9, 4.000 "
       "s) in time: 160 nodes change: preloads 640.0 ms + 145 receipts of the switch before 435.0 ms + latch 1.0 ms "
       "= 1076.0 ms; the switch before is 1000.0 ms earlier, of which 700.0 ms may be used and 30 % stay in reserve; "
-      "4 of 5 switches do not fit (share its nodes among 2 buses, or raise the bit rate about 1.5 times, or leave "
+      "4 of 5 switches do not fit (share its nodes among 2 buses, or raise the bit rate, which does not shorten "
+      "silences and turnarounds, or leave "
       "3.07 counts between these switches instead of 2.00)");
 }
 
