@@ -61,7 +61,7 @@ TEST(CommandLine, TellsItsVersionAndItsCommands) {
   const Ran help = footlight({"--help"});
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
-  for (const std::string command : {"new", "check", "plan", "measure", "export"}) {
+  for (const std::string command : {"new", "check", "plan", "measure", "export", "dryrun"}) {
     EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
     const Ran one = footlight({command, "--help"});
     EXPECT_EQ(one.status, 0);
