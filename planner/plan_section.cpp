@@ -38,7 +38,6 @@ class PictureSection {
         section_(show.sections[index.at()]),
         index_(index),
         film_(film),
-        ways_(ways),
         progress_(progress),
         grid_(show.stage.grid),
         people_(static_cast<int>(show.performers.size())) {
@@ -77,6 +76,7 @@ class PictureSection {
 
   [[nodiscard]] std::vector<const Mask*> key_masks() const {
     std::vector<const Mask*> masks;
+    masks.reserve(keys_.size());
     for (const KeyFrame& key : keys_) masks.push_back(&film_.frames[static_cast<std::size_t>(key.frame)]);
     return masks;
   }
@@ -214,7 +214,6 @@ class PictureSection {
   const Section& section_;
   SectionIndex index_;
   const Film& film_;
-  const Ways& ways_;
   const Progress& progress_;
   const Grid& grid_;
   int people_;
@@ -277,9 +276,11 @@ Result<SectionPlan> plan_section(const Show& show, SectionIndex index, const std
                                  const Ways& ways, const Progress& progress) {
   const Section& section = show.sections[index.at()];
   const auto* cells = std::get_if<CellsSource>(&section.from);
-  FL_CHECK(cells != nullptr || (film.has_value() && !film->frames.empty()));
-  auto plan =
-      cells != nullptr ? cells_section(show, index, *cells) : PictureSection(show, index, *film, ways, progress).run();
+  if (cells == nullptr && (!film || film->frames.empty())) {
+    return internal_error("the frames of section '" + section.name + "' are missing");
+  }
+  auto plan = cells != nullptr ? cells_section(show, index, *cells)
+                               : PictureSection(show, index, film.value(), ways, progress).run();
   if (!plan) return plan;
   plan->section.name = section.name;
   plan->section.start = show.tempo.at(section.start_count);

@@ -132,6 +132,7 @@ class Settler {
     const auto best = assign_sparse(static_cast<std::uint32_t>(people.size()), arcs);
     if (!best) return;
     std::vector<std::uint32_t> targets;
+    targets.reserve(people.size());
     for (const std::uint32_t i : people) targets.push_back(target_of[i]);
     for (std::size_t n = 0; n < people.size(); ++n) target_of[people[n]] = targets[best->target_of[n]];
   }
