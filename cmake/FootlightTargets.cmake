@@ -9,9 +9,10 @@ endif()
 add_library(footlight_warnings INTERFACE)
 target_include_directories(footlight_warnings INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(footlight_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -fstack-protector-strong -ffp-contract=off
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -fstack-protector-strong -ffp-contract=off
   $<$<BOOL:${FOOTLIGHT_WERROR}>:-Werror>
   $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+# -Wno-restrict: g++ 12 warns of std::string + at -O3 without cause (GCC bug 105651).
 add_library(footlight_flags INTERFACE)
 target_link_libraries(footlight_flags INTERFACE footlight_warnings)
 if(FOOTLIGHT_SANITIZE)
