@@ -129,9 +129,24 @@ std::vector<Value> extend(const Walks& walks, const Walks& coarse, const Matchin
   return prices;
 }
 
-Matching auction(const Walks& walks, PricedTargets& targets, std::span<const double> steps, double margin) {
+/// Steps and margins in units of Walks::spacing, found by trial on formations of performers. Distances are nearly
+/// linear along a ray, so that far more targets are nearly as good as the best, and finer steps pay.
+struct Tuning {
+  std::array<double, 2> sample_steps;  ///< of the auctions of a sample
+  std::vector<double> steps;           ///< of the auctions of all
+  float margin;                        ///< of the short lists there
+  double arc_margin;                   ///< of the arcs for the exact finish
+};
+
+const Tuning& tuning(WalkCost metric) {
+  static const Tuning squared{{4, 0.5}, {2, 1}, 8, 4};
+  static const Tuning euclidean{{0.5, 0.05}, {0.5, 0.125, 0.032, 0.008, 0.002}, 0.12F, 0.02};
+  return metric == WalkCost::squared ? squared : euclidean;
+}
+
+Matching auction(const Walks& walks, PricedTargets& targets, std::span<const double> steps) {
   const float spacing = targets.to_search(walks.spacing());
-  WalkAuction auction(walks, targets.tree(), static_cast<float>(margin) * spacing);
+  WalkAuction auction(walks, targets.tree(), tuning(walks.metric()).margin * spacing);
   for (const double step : steps) {
     const bool sold_out =
         auction.hold(std::max(static_cast<float>(step) * spacing, targets.tree().rounding()), kMostBids * walks.size());
@@ -146,8 +161,7 @@ Matching sample_match(const Walks& walks) {
   const Walks coarse = walks.every_fourth();
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
-  constexpr std::array<double, 2> steps{4, 0.5};
-  return auction(walks, targets, steps, 8);
+  return auction(walks, targets, tuning(walks.metric()).sample_steps);
 }
 
 /// Every allowed walk.
@@ -244,15 +258,13 @@ std::optional<Matching> match_walks(const Walks& walks) {
   const Walks coarse = walks.every_fourth();
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
-  const std::vector<double> steps =
-      walks.metric() == WalkCost::squared ? std::vector<double>{2, 1} : std::vector<double>{.5, .125, .032, .008, .002};
-  Matching matching = auction(walks, targets, steps, 8);
-  targets.fit(matching.price);
+  Matching matching = auction(walks, targets, tuning(walks.metric()).steps);
   if (walks.limited() && std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) {
     return finish_with_all(walks, targets, std::move(matching));
   }
-  ArcRows rows = candidates(walks, targets, matching,
-                            walks.metric() == WalkCost::squared ? 4 * walks.spacing() : walks.spacing() / 50);
+  targets.fit(matching.price);
+  const auto margin = static_cast<Value>(tuning(walks.metric()).arc_margin * static_cast<double>(walks.spacing()));
+  ArcRows rows = candidates(walks, targets, matching, margin);
   return finish(walks, targets, std::move(matching), std::move(rows), false);
 }
 

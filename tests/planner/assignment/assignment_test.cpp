@@ -11,8 +11,10 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "tests/bench/instances.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -238,6 +240,112 @@ TEST(Assign, KeepsFarClustersApart) {
     expect_proved(a, b, cost, kNoLimit, *found);
     for (std::uint32_t i = 0; i < 200; ++i) EXPECT_EQ(found->target_of[i] < 100, i < 100);
   }
+}
+
+struct Known {
+  bench::Scene scene;
+  int people;
+  double squared;
+  double euclidean;
+};
+
+/// By LEMON's NetworkSimplex: footlight_bench --benchmark_filter='peer/.*/(330|1000)/' (counter "cost").
+constexpr std::array<Known, 6> kByNetworkSimplex{{
+    {bench::Scene::disk_to_ring, 330, 4072, 1100.446745894},
+    {bench::Scene::disk_to_ring, 1000, 35740, 5725.971350880},
+    {bench::Scene::block_to_letters, 330, 8812, 1539.885391222},
+    {bench::Scene::block_to_letters, 1000, 74797, 7869.826591321},
+    {bench::Scene::flower_turned, 330, 836, 383.734652878},
+    {bench::Scene::flower_turned, 1000, 7213, 2064.916203270},
+}};
+
+TEST(Assign, EqualsNetworkSimplexOnFormations) {
+  for (const Known& known : kByNetworkSimplex) {
+    const auto instance = bench::make_instance(known.scene, known.people);
+    const auto squared = assign(instance.sources, instance.targets, WalkCost::squared, kNoLimit);
+    ASSERT_TRUE(squared.has_value());
+    EXPECT_EQ(squared->cost, known.squared) << bench::to_text(known.scene) << ' ' << known.people;
+    EXPECT_EQ(squared->gap, 0.0);
+    const auto euclidean = assign(instance.sources, instance.targets, WalkCost::euclidean, kNoLimit);
+    ASSERT_TRUE(euclidean.has_value());
+    EXPECT_NEAR(euclidean->cost, known.euclidean, 1e-8 * known.euclidean)
+        << bench::to_text(known.scene) << ' ' << known.people;
+  }
+}
+
+/// Two formations of 1 to 120 people on a field just large enough to be crowded.
+struct Pair {
+  Points a;
+  Points b;
+};
+
+Pair any_pair() {
+  const auto people = *rc::gen::inRange<std::size_t>(1, 120);
+  const auto side = static_cast<std::uint64_t>(std::sqrt(2.0 * static_cast<double>(people))) + 1;
+  const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+  return {distinct_cells(seed, people, side), distinct_cells(seed + 1, people, side)};
+}
+
+TEST(AssignProperty, ProvesItself) {
+  EXPECT_TRUE(rc::check([] {
+    const auto [a, b] = any_pair();
+    const auto cost = *rc::gen::elementOf(std::vector{WalkCost::squared, WalkCost::euclidean});
+    const double longest_m = *rc::gen::elementOf(std::vector{kNoLimit, 3.0, 6.0, 10.0});
+    const auto found = assign(a, b, cost, longest_m);
+    RC_ASSERT(found.has_value() || longest_m < kNoLimit);
+    if (found) expect_proved(a, b, cost, longest_m, *found);
+    RC_ASSERT(!::testing::Test::HasFailure());
+  }));
+}
+
+TEST(AssignProperty, TheOrderOfThePeopleDoesNotChangeTheCost) {
+  EXPECT_TRUE(rc::check([] {
+    auto [a, b] = any_pair();
+    const auto before = assign(a, b, WalkCost::squared, kNoLimit);
+    std::ranges::reverse(a);
+    std::ranges::rotate(b, b.begin() + static_cast<std::ptrdiff_t>(*rc::gen::inRange<std::size_t>(0, b.size())));
+    RC_ASSERT(assign(a, b, WalkCost::squared, kNoLimit)->cost == before->cost);
+  }));
+}
+
+TEST(AssignProperty, MovingAllTargetsKeepsTheSquaredAssignmentOptimal) {
+  EXPECT_TRUE(rc::check([] {
+    auto [a, b] = any_pair();
+    const auto before = assign(a, b, WalkCost::squared, kNoLimit);
+    const Point by{0.25 * *rc::gen::inRange(-400, 400), 0.25 * *rc::gen::inRange(-400, 400)};
+    for (Point& p : b) p = p + by;
+    const auto after = assign(a, b, WalkCost::squared, kNoLimit);
+    RC_ASSERT(after->gap == 0.0);
+    double kept = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) kept += squared_length(a[i] - b[before->target_of[i]]);
+    RC_ASSERT(std::abs(kept - after->cost) <= 1e-12 * kept);
+  }));
+}
+
+TEST(AssignProperty, WhoStandsOnATargetMayStayThereWhenDistancesAreSummed) {
+  EXPECT_TRUE(rc::check([] {
+    const auto [a, b] = any_pair();
+    const auto found = assign(a, b, WalkCost::euclidean, kNoLimit);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (std::ranges::find(b, a[i]) != b.end()) RC_ASSERT(b[found->target_of[i]] == a[i]);
+    }
+    std::vector<Arc> all;  // and the optimum over all pairs, where nobody is made to stay, is no lower
+    for (std::uint32_t i = 0; i < a.size(); ++i) {
+      for (std::uint32_t j = 0; j < b.size(); ++j) all.push_back({i, j, distance(a[i], b[j])});
+    }
+    const auto free = assign_sparse(static_cast<std::uint32_t>(a.size()), all);
+    RC_ASSERT(std::abs(free->cost - found->cost) <= 1e-9 * (1 + free->cost));
+  }));
+}
+
+TEST(AssignProperty, AnswersTheSameEachTime) {
+  EXPECT_TRUE(rc::check([] {
+    const auto [a, b] = any_pair();
+    for (const WalkCost cost : kBothCosts) {
+      RC_ASSERT(assign(a, b, cost, 7.0).has_value() == assign(a, b, cost, 7.0).has_value());
+      RC_ASSERT(assign(a, b, cost, kNoLimit)->target_of == assign(a, b, cost, kNoLimit)->target_of);
+    }
+  }));
 }
 
 TEST(AssignSparse, RefusesTwoWhoHaveOneTarget) {
