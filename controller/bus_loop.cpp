@@ -11,6 +11,7 @@ namespace {
 constexpr Duration kSuspect = milliseconds(1000);  // T1 of the trust model
 constexpr double kPollShare = 0.2;                 // of the bus, for the promise of T1
 constexpr Duration kFirstBackoff = milliseconds(50);
+constexpr Duration kAskAgain = milliseconds(250);
 constexpr Duration kLongestBackoff = milliseconds(1000);
 constexpr std::uint8_t kMissesToQuarantine = 3;
 constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
@@ -25,6 +26,11 @@ constexpr std::uint8_t kStateHold = 2;
 
 BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver)
     : schedule_(schedule), driver_(driver), can_(driver.capabilities()) {
+  latch_time_ = driver.latch_time();
+  status_time_ = driver.status_time();
+  for (int channels = 1; channels <= kChannelsPerNode; ++channels) {
+    preload_time_[static_cast<std::size_t>(channels)] = driver.preload_time(channels);
+  }
   std::size_t most = 0;
   for (const drivers::NodeAddress& address : nodes) most = std::max(most, address.node.at() + 1);
   by_node_.assign(most, -1);
@@ -58,7 +64,7 @@ void BusLoop::note_end() noexcept {
   if (under_way_ == Operation::none || !driver_.ready()) return;
   // A driver with a queue is ready before its frames are on the wire: there the estimate stands.
   if (!can_.pushes_status) {
-    const Duration most = 4 * driver_.preload_time(kChannelsPerNode) + milliseconds(100);
+    const Duration most = 4 * preload_time_[kChannelsPerNode] + milliseconds(100);
     Duration& longest = longest_[static_cast<std::size_t>(under_way_)];
     longest = std::clamp(now_ - since_, longest, std::max(longest, most));
     line_free_ = now_;
@@ -239,8 +245,12 @@ void BusLoop::on_miss(NodeState& node) noexcept {
   ++counters_.misses;
   node.in_flight = false;
   if (can_.pushes_status) {
-    // Unconfirmed: it gets preload and latch again. Who was right before has lost an answer, no more.
+    // Unconfirmed: it gets preload and latch again. Who was right before has most often lost an answer, no more; it is
+    // asked again soon.
     node.verify = false;
+    if (node.misses > 0) node.right = false;
+    if (node.right) refresh_at_ = std::min(refresh_at_, now_ + kAskAgain);
+    wake_due_ = wake_due_ || (!node.right && !node.quarantined);
   } else if (node.offered != next_ || node.pending == next_) {
     node.verify = can_.readback;  // a question was missed: ask again at once
   }
@@ -302,13 +312,13 @@ Duration BusLoop::notice(std::size_t k) const {
   if (can_.sequenced_latch || k == 0) return {};
   Duration sum{};
   for (const NodeState& node : nodes_) {
-    if (!std::ranges::equal(looks(k - 1, node), looks(k, node))) sum += driver_.preload_time(node.address.channels);
+    if (!std::ranges::equal(looks(k - 1, node), looks(k, node))) sum += preload_time_[node.address.channels];
   }
-  return 3 * sum + 2 * driver_.latch_time() + milliseconds(20);
+  return 3 * sum + 2 * latch_time_ + milliseconds(20);
 }
 
 Duration BusLoop::suspect_time() const {
-  const Duration round = static_cast<Duration::rep>(nodes_.size()) * driver_.status_time();
+  const Duration round = static_cast<Duration::rep>(nodes_.size()) * status_time_;
   return std::max(kSuspect,
                   can_.pushes_status
                       ? kSuspect

@@ -138,6 +138,10 @@ class BusLoop final : private drivers::EventSink {
   const CueSchedule& schedule_;
   drivers::Driver& driver_;
   drivers::Capabilities can_;
+  // The driver's budgets, asked once: they are wanted at every step.
+  Duration latch_time_{};
+  Duration status_time_{};
+  std::array<Duration, kChannelsPerNode + 1> preload_time_{};
   std::vector<NodeState> nodes_;
   std::vector<std::int32_t> by_node_;  ///< position in nodes_ of a NodeIndex, -1: of another bus
   BusCounters counters_;
@@ -151,6 +155,7 @@ class BusLoop final : private drivers::EventSink {
   bool started_ = false;
   bool refused_ = false;      ///< the driver was ready and took nothing: try again soon
   std::uint8_t passes_ = 1;   ///< preloads of `next_` for each node, where none is receipted
+  bool wake_due_ = false;     ///< a node that is not right does not answer a latch: perhaps it waits to be started
   bool placed_ = false;       ///< the first target has been seen
   bool unlatched_ = false;    ///< a preload of `next_` has been sent since the last latch
   std::uint8_t repeats_ = 0;  ///< latches of `current_` to send again at once

@@ -24,7 +24,7 @@ bool BusLoop::act() noexcept {
   if (next_ != current_ && now_ >= latch_at()) return latch_next();
   if (repeat_latch() || send_heartbeat()) return true;
   if (!started_) {
-    started_ = took(driver_.start(now_), Operation::heartbeat, driver_.latch_time());
+    started_ = took(driver_.start(now_), Operation::heartbeat, latch_time_);
     return started_;
   }
   if (in_hurry() && preload_next()) return true;
@@ -50,7 +50,7 @@ bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration tim
 // ---- the moment
 
 Instant BusLoop::latch_at() const noexcept {
-  return next_ == current_ || next_at_ == kNever ? kNever : next_at_ - driver_.latch_time();
+  return next_ == current_ || next_at_ == kNever ? kNever : next_at_ - latch_time_;
 }
 
 bool BusLoop::latch_next() noexcept {
@@ -61,8 +61,8 @@ bool BusLoop::latch_next() noexcept {
     switch_over(false);
     return true;
   }
-  const Instant end = std::max(line_free_, now_) + driver_.latch_time();
-  if (!took(driver_.latch(sequence_of(next_), now_), Operation::latch, driver_.latch_time())) return false;
+  const Instant end = std::max(line_free_, now_) + latch_time_;
+  if (!took(driver_.latch(sequence_of(next_), now_), Operation::latch, latch_time_)) return false;
   const Duration late = std::max(Duration{}, end - next_at_);
   ++counters_.latches;
   counters_.late_latches += late > kLateness ? 1 : 0;
@@ -72,7 +72,7 @@ bool BusLoop::latch_next() noexcept {
 }
 
 bool BusLoop::latch_current() noexcept {
-  return took(driver_.latch(sequence_of(current_), now_), Operation::latch, driver_.latch_time());
+  return took(driver_.latch(sequence_of(current_), now_), Operation::latch, latch_time_);
 }
 
 bool BusLoop::repeat_latch() noexcept {
@@ -86,7 +86,7 @@ bool BusLoop::repeat_latch() noexcept {
 
 bool BusLoop::send_heartbeat() noexcept {
   if (now_ < heartbeat_at_ || !fits(time_of(Operation::heartbeat))) return false;
-  if (!took(driver_.heartbeat(show_time_, now_), Operation::heartbeat, driver_.latch_time())) return false;
+  if (!took(driver_.heartbeat(show_time_, now_), Operation::heartbeat, latch_time_)) return false;
   heartbeat_at_ = now_ + kHeartbeat;
   return true;
 }
@@ -102,7 +102,7 @@ bool BusLoop::upload(bool urgent_only) noexcept {
   if (most == 0) return false;
   const auto index = static_cast<LookIndex>(most);
   if (!took(driver_.upload_look(index, schedule_.looks()[most], now_), Operation::upload,
-            driver_.preload_time(kChannelsPerNode / 2))) {
+            preload_time_[kChannelsPerNode / 2])) {
     return false;
   }
   if (--uploads_[most] == 0) urgent_[most] = false;
@@ -128,6 +128,10 @@ bool BusLoop::verify() noexcept {
 bool BusLoop::repair() noexcept {
   if (!may_latch_current() || awaits_status()) return false;
   const Instant deadline = can_.sequenced_latch ? latch_at() : preload_from();
+  if (wake_due_ && fits_before(latch_time_, deadline)) {
+    wake_due_ = false;
+    return took(driver_.start(now_), Operation::heartbeat, latch_time_);
+  }
   bool under_way = false;
   bool ready = false;
   for (NodeState& node : nodes_) {
@@ -165,7 +169,7 @@ Duration BusLoop::preloads_left() const noexcept {
     if (!wants_preload(node)) continue;
     const int sent = node.offered == next_ ? node.offers : 0;
     const int left = can_.sequenced_latch ? 1 : std::max(1, passes_ - sent);
-    sum += left * driver_.preload_time(node.address.channels);
+    sum += left * preload_time_[node.address.channels];
   }
   return sum;
 }
@@ -198,7 +202,7 @@ bool BusLoop::preload_next() noexcept {
 
 bool BusLoop::send_preload(NodeState& node, std::size_t k) noexcept {
   const drivers::SendStatus status = driver_.preload(node.address, sequence_of(k), looks(k, node), now_);
-  if (!took(status, Operation::preload, driver_.preload_time(node.address.channels))) return false;
+  if (!took(status, Operation::preload, preload_time_[node.address.channels])) return false;
   const bool again = node.offered == k;
   // Where nothing is receipted, a second pass before the moment is the rule and no retry.
   if (again && (can_.sequenced_latch || k == current_)) ++counters_.retries;
@@ -211,7 +215,7 @@ bool BusLoop::send_preload(NodeState& node, std::size_t k) noexcept {
 }
 
 bool BusLoop::send_ask(NodeState& node) noexcept {
-  if (!took(driver_.ask(node.address, now_), Operation::ask, driver_.status_time())) return false;
+  if (!took(driver_.ask(node.address, now_), Operation::ask, status_time_)) return false;
   counters_.retries += node.misses > 0 ? 1 : 0;
   return true;
 }
@@ -243,8 +247,8 @@ bool BusLoop::refresh() noexcept {
   if (now_ < refresh_at_ || nodes_.empty()) return false;
   const auto count = static_cast<Duration::rep>(nodes_.size());
   if (can_.pushes_status) {
-    const Duration answers = count * driver_.status_time() + kAnswerWindow;
-    if (awaits_status() || !may_latch_current() || !fits_before(driver_.latch_time() + answers, preload_from())) {
+    const Duration answers = count * status_time_ + kAnswerWindow;
+    if (awaits_status() || !may_latch_current() || !fits_before(latch_time_ + answers, preload_from())) {
       return false;
     }
     if (!latch_current()) return false;
@@ -256,20 +260,20 @@ bool BusLoop::refresh() noexcept {
   NodeState& node = nodes_[refresh_cursor_];
   if (can_.readback) {
     if (!fits(time_of(Operation::ask))) return false;
-    refresh_at_ = now_ + std::max(kRefreshRound / count, 2 * driver_.status_time());
+    refresh_at_ = now_ + std::max(kRefreshRound / count, 2 * status_time_);
     return !node.quarantined && !node.verify && send_ask(node);
   }
   // Sent again like a repair: what cannot be read back may have been switched off and on.
-  refresh_at_ = now_ + std::max(kResendRound / count, 2 * driver_.preload_time(kChannelsPerNode));
+  refresh_at_ = now_ + std::max(kResendRound / count, 2 * preload_time_[kChannelsPerNode]);
   if (may_latch_current()) node.right = false;
   return may_latch_current();
 }
 
 Duration BusLoop::time_of(Operation operation) const noexcept {
-  Duration budget = driver_.latch_time();
-  if (operation == Operation::ask) budget = driver_.status_time();
-  if (operation == Operation::preload) budget = driver_.preload_time(kChannelsPerNode);
-  if (operation == Operation::upload) budget = driver_.preload_time(kChannelsPerNode / 2);
+  Duration budget = latch_time_;
+  if (operation == Operation::ask) budget = status_time_;
+  if (operation == Operation::preload) budget = preload_time_[kChannelsPerNode];
+  if (operation == Operation::upload) budget = preload_time_[kChannelsPerNode / 2];
   return std::max(budget, longest_[static_cast<std::size_t>(operation)]);
 }
 

@@ -72,6 +72,14 @@ TEST(DryRun, EveryMarkerIsRightAtTheEndOfEveryCueThroughLossAndRestarts) {
   }
 }
 
+// Its boot-up message and the NMT start that followed were lost: a CAN node waited a second for its next heartbeat.
+TEST(DryRun, RegressionARestartedCanNodeIsStartedAgainWhenItsBootUpMessageIsLost) {
+  SmallShow small = random_show(16, 12, 60, 3, 4, 9);
+  small.rig = lamps_everywhere(small.show.stage.grid, kAllKinds, 115'200, 16);
+  const DryRunReport report = report_of(small, "loss=5%,reboot=2", 32);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+}
+
 TEST(DryRun, TheSameSeedGivesTheSameTraceByteForByte) {
   const SmallShow small = small_show();
   std::vector<std::string> traces;
