@@ -111,7 +111,7 @@ TEST(PlanShow, KeepsOffBlockedCellsAndGoesAroundThem) {
 }
 
 TEST(PlanShow, AnyFilmIsValidOrTheDrawingGivesWay) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     Show show = show_with(1 + static_cast<int>(rng.below(60)), static_cast<GridKind>(rng.below(3)), 16, 12);
     if (rng.below(2) == 0) show.stage.reserve = cells_in(show.stage.grid, "A1:D12");
@@ -129,7 +129,7 @@ TEST(PlanShow, AnyFilmIsValidOrTheDrawingGivesWay) {
     RC_ASSERT(planned.has_value());
     RC_ASSERT(planned->refusal.empty());
     RC_ASSERT(planned->plan.valid);
-  });
+  }));
 }
 
 TEST(PlanShow, NamedPeopleStandWhereTheListSays) {

@@ -79,7 +79,7 @@ TEST(Draw, BlankPictureDrawsNobodyOrWidensWhatItIsGiven) {
 }
 
 TEST(Draw, ExactlyTheNumberAskedForAndNeverAnUnusableCell) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     Floor floor(static_cast<GridKind>(rng.below(3)), 12, 9);
     int usable = 0;
@@ -101,7 +101,7 @@ TEST(Draw, ExactlyTheNumberAskedForAndNeverAnUnusableCell) {
       const bool taken = std::binary_search(drawing.cells.begin(), drawing.cells.end(), CellIndex::of(i));
       if (!taken && floor.usable[i] != 0) RC_ASSERT(floor.shares[i] <= least_taken);
     }
-  });
+  }));
 }
 
 TEST(DistanceTo, IsTheDistanceToTheNearestCellOnEveryGrid) {

@@ -61,7 +61,7 @@ TEST(Sample, SnappedKeyFrameShowsWhatTheFilmShowsOnThatCount) {
 }
 
 TEST(Sample, FirstAndLastFrameAreKeyFramesWithTimeToWalkBetween) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const int frames = *rc::gen::inRange(2, 80);
     const double counts = *rc::gen::inRange(1, 90);
     const double shortest_s = *rc::gen::inRange(0, 40) / 10.0;
@@ -78,7 +78,7 @@ TEST(Sample, FirstAndLastFrameAreKeyFramesWithTimeToWalkBetween) {
       if (keys.size() > 2) RC_ASSERT(to_seconds(keys[k].time - keys[k - 1].time) >= std::min(shortest_s, 3.2) - 1e-9);
       if (snap && k + 1 < keys.size()) RC_ASSERT(keys[k].count == std::round(keys[k].count));
     }
-  });
+  }));
 }
 
 }  // namespace

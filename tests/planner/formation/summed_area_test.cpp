@@ -11,7 +11,7 @@ namespace footlight::planner {
 namespace {
 
 TEST(SummedArea, AreaOfAnyRectangleIsTheSumOfItsPixels) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     const int width = static_cast<int>(rng.below(90)) + 1;
     const int height = static_cast<int>(rng.below(20)) + 1;
@@ -25,7 +25,7 @@ TEST(SummedArea, AreaOfAnyRectangleIsTheSumOfItsPixels) {
       for (int x = x0; x < x1; ++x) expected += mask.at(x, y) ? 1 : 0;
     }
     RC_ASSERT(SummedArea(mask).area(x0, y0, x1, y1) == expected);
-  });
+  }));
 }
 
 TEST(SummedArea, CountsPartsOfPixelsAndNothingOutside) {

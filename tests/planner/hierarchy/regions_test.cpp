@@ -39,7 +39,7 @@ TEST(GrowRegions, VarianceKeepsRegionsCompact) {
 }
 
 TEST(GrowRegions, EverybodyIsInOneRegionWithinTheLimits) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     const Grid grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 14, 12, 1.0);
     std::vector<CellIndex> cells;
@@ -64,7 +64,7 @@ TEST(GrowRegions, EverybodyIsInOneRegionWithinTheLimits) {
       RC_ASSERT(squares / size <= limits.variance_m2 + 1e-9);
     }
     RC_ASSERT(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
-  });
+  }));
 }
 
 }  // namespace

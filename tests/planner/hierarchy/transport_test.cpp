@@ -19,7 +19,7 @@ TEST(Transport, SplitsARegionWhereTheSidesDiffer) {
 }
 
 TEST(Transport, IsAsCheapAsTheExactAssignmentOfEverySinglePerson) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     const auto loads = [&](int people) {
       std::vector<Load> out;
@@ -51,7 +51,7 @@ TEST(Transport, IsAsCheapAsTheExactAssignmentOfEverySinglePerson) {
     }
     RC_ASSERT(carried == people);
     RC_ASSERT(std::abs(cost - assign_sparse(source, arcs)->cost) < 1e-6);
-  });
+  }));
 }
 
 }  // namespace

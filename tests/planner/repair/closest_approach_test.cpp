@@ -35,7 +35,7 @@ TEST(ClosestApproach, LooksOnlyAtTheGivenPartOfTheTime) {
 }
 
 TEST(NearPairs, AreTheSameAsByLookingAtAll) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     const auto walks = random_walks(rng, 2 + rng.below(60), 15, 1 + 30 * rng.uniform());
     const double reach = 0.2 + 2 * rng.uniform();
@@ -52,11 +52,11 @@ TEST(NearPairs, AreTheSameAsByLookingAtAll) {
       if (approach.distance_m < reach - 1e-9) found.emplace_back(pair.a, pair.b);
     }
     RC_ASSERT(found == expected);
-  });
+  }));
 }
 
 TEST(NearPairs, CanBeLimitedToThoseOfSomePeople) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     const auto walks = random_walks(rng, 2 + rng.below(40), 8, 6);
     std::vector<char> among;
@@ -68,7 +68,7 @@ TEST(NearPairs, CanBeLimitedToThoseOfSomePeople) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
     for (const NearPair& pair : near_pairs(walks, 1.0, among)) found.emplace_back(pair.a, pair.b);
     RC_ASSERT(found == expected);
-  });
+  }));
 }
 
 TEST(NearestPair, FindsTheNearestHoweverFarApart) {

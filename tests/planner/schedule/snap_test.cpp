@@ -39,7 +39,7 @@ TEST(Snap, WhoHoldsStaysAndTheOwnerOfThatCellGivesWay) {
 }
 
 TEST(Snap, EverybodyGetsACellOfTheirOwnWithinReach) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     Stage stage;
     stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 12, 10, 1.0);
@@ -72,7 +72,7 @@ TEST(Snap, EverybodyGetsACellOfTheirOwnWithinReach) {
       RC_ASSERT(distance(from, to) <= longest_m || next[i] == now[i]);
       RC_ASSERT(next[i] == now[i] || ways.straight(from, to));
     }
-  });
+  }));
 }
 
 }  // namespace

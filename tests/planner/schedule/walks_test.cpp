@@ -58,7 +58,7 @@ TEST(Settle, SaysWhoIsTooCloseWhereNothingHelps) {
 }
 
 TEST(Settle, WithoutALimitNobodyEverComesNearerThanTheBound) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     Stage stage;
     stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 10, 9, 1.0);
@@ -76,7 +76,7 @@ TEST(Settle, WithoutALimitNobodyEverComesNearerThanTheBound) {
     const Leg leg = settle({&ways, from, to, 1e9, 0.5});
     RC_ASSERT(leg.conflicts.empty());
     RC_ASSERT(near_pairs(walks_of(stage.grid, from, to, leg), stage.grid.clearance_bound_m() - 1e-9).empty());
-  });
+  }));
 }
 
 }  // namespace
