@@ -16,6 +16,13 @@ using Value = std::int64_t;
 inline constexpr Value kFar = std::numeric_limits<Value>::max() / 4;
 inline constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
+/// The nearest integer of a number in [0, 2^52), halves up. Truncation is one instruction everywhere, std::llround a
+/// call.
+[[nodiscard]] inline Value nearest_value(double number) {
+  constexpr double kHalf = 0.5;
+  return static_cast<Value>(number + kHalf);
+}
+
 /// Allowed pairs, row by row of their sources.
 struct ArcRows {
   std::vector<std::uint32_t> first{0};  ///< size + 1; row i is [first[i], first[i + 1])

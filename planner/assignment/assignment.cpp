@@ -146,6 +146,8 @@ Assignment assign_where_common_points_stay(std::span<const Point> sources, std::
   const Common common = find_common(sources, targets);
   std::vector<Point> from;
   std::vector<Point> to;
+  from.reserve(common.sources.size());
+  to.reserve(common.targets.size());
   for (const std::uint32_t i : common.sources) from.push_back(sources[i]);
   for (const std::uint32_t j : common.targets) to.push_back(targets[j]);
   const auto rest = assign_all(from, to, WalkCost::euclidean, std::numeric_limits<double>::infinity());

@@ -52,7 +52,7 @@ class PricedTargets {
   [[nodiscard]] std::vector<Value> prices() const {
     std::vector<Value> prices(walks_.size());
     for (std::uint32_t s = 0; s < walks_.size(); ++s) {
-      prices[s] = base_ + static_cast<Value>(static_cast<double>(tree_.price(s)) * walks_.scale() + 0.5);
+      prices[s] = base_ + nearest_value(static_cast<double>(tree_.price(s)) * walks_.scale());
     }
     return prices;
   }

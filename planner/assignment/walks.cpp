@@ -39,7 +39,7 @@ class CommonStep {
  private:
   [[nodiscard]] bool is_multiple(double difference) const {
     const double steps = difference / step_;
-    return std::abs(steps - static_cast<double>(static_cast<std::int64_t>(steps + 0.5))) * step_ <= tolerance_;
+    return std::abs(steps - static_cast<double>(nearest_value(steps))) * step_ <= tolerance_;
   }
   double tolerance_;
   double step_ = 0;
@@ -175,8 +175,8 @@ Walks::Walks(std::span<const Point> sources, std::span<const Point> targets, Wal
 }
 
 Value Walks::to_value(double squared) const {
-  if (metric_ == WalkCost::squared) return static_cast<Value>(squared * scale_ + 0.5);
-  return static_cast<Value>(std::sqrt(squared) * scale_ + 0.5);
+  if (metric_ == WalkCost::squared) return nearest_value(squared * scale_);
+  return nearest_value(std::sqrt(squared) * scale_);
 }
 
 bool Walks::limited() const { return longest_m_ < kInfinity; }
@@ -199,7 +199,7 @@ void Walks::measure_spacing() {
   const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
   std::ranges::nth_element(spacings, middle);
   const double spacing = metric_ == WalkCost::squared ? static_cast<double>(*middle) * *middle : *middle;
-  spacing_ = std::max<Value>(1, static_cast<Value>(spacing * scale_ + 0.5));
+  spacing_ = std::max<Value>(1, nearest_value(spacing * scale_));
 }
 
 Walks Walks::every_fourth() const {
