@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <utility>
 #include <variant>
@@ -25,6 +26,9 @@ struct Error {
 
   friend bool operator==(const Error&, const Error&) = default;
 };
+
+/// For logs and tests.
+std::ostream& operator<<(std::ostream& out, const Error& error);
 
 inline Error input_error(std::string message) { return {ErrorKind::input, std::move(message)}; }
 inline Error refusal(std::string message) { return {ErrorKind::refused, std::move(message)}; }

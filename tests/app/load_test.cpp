@@ -71,11 +71,9 @@ TEST_F(DecodeFilms, AFilmThatRunsIntoTheNextSectionIsReportedThere) {
   sections() = {section("a", video(kVideo), 1, 10), section("b", image(kImage), 3, 11)};
   const auto films = decode();
   ASSERT_FALSE(films);
-  EXPECT_EQ(
-      films.error(),
-      input_error(
-          "show.yaml:11:5: error: sections[1].start: section 'b' begins at count 3, but 'a' lasts until count 3.2 at "
-          "its film's own length (start at count 3.2 or later, or give 'a' a duration)"));
+  EXPECT_EQ(films.error(), input_error("show.yaml:11:5: error: sections[1].start: section \"b\" starts at count 3, and "
+                                       "section \"a\" lasts until count "
+                                       "3.2 (start it at count 3.2 or later)"));
 }
 
 TEST_F(DecodeFilms, EveryWrongFilmIsReportedAtItsSection) {
