@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "tests/support/program.hpp"
+#include "tests/support/starter_show.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace footlight {
@@ -18,43 +19,13 @@ namespace {
 using nlohmann::json;
 using test::footlight;
 using test::Ran;
+using test::StarterShow;
 using test::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Names = std::vector<std::string>;
 
 constexpr const char* kVideo = FOOTLIGHT_TEST_DATA "/moving_square_40x30_12_frames_10fps.avi";
-
-/// The starter show in a folder of its own, with a word replaced.
-class StarterShow : public ::testing::Test {
- protected:
-  StarterShow() {
-    const Ran made = footlight({"new", folder_ / "s", "--title", "Twelve"});
-    EXPECT_EQ(made.status, 0) << made.err;
-    as_made_ = files();
-  }
-  void replace(const std::string& from, const std::string& to) {
-    std::string text = folder_.read("s/show.yaml");
-    const std::size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    folder_.write("s/show.yaml", text.replace(at, from.size(), to));
-  }
-  /// The ring must be reached one count after the line.
-  void make_unwalkable() { replace("start: count 25", "start: count 10"); }
-  Names files() const {
-    Names out;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "s")) {
-      out.push_back(entry.path().filename().string());
-    }
-    std::sort(out.begin(), out.end());
-    return out;
-  }
-
-  TemporaryFolder folder_;
-  std::string show_ = folder_ / "s/show.yaml";
-  std::string plan_ = folder_ / "s/show.plan";
-  Names as_made_;
-};
 
 TEST(CommandLine, TellsItsVersionAndItsCommands) {
   EXPECT_THAT(footlight({"--version"}).out, StartsWith("footlight "));
