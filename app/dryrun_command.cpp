@@ -3,11 +3,12 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -36,7 +37,8 @@ class TraceFile {
       : file_(std::move(file)), temporary_(fmt::format("{}.{}.part", file_, getpid())) {}
   ~TraceFile() {
     if (stream_.is_open()) stream_.close();
-    if (!kept_) std::remove(temporary_.c_str());
+    std::error_code ignored;
+    if (!kept_) std::filesystem::remove(temporary_, ignored);
   }
   TraceFile(const TraceFile&) = delete;
   TraceFile& operator=(const TraceFile&) = delete;
@@ -56,7 +58,7 @@ class TraceFile {
 
  private:
   [[nodiscard]] Error failure() const {
-    return input_error(fmt::format("cannot write the trace '{}': {}", file_, std::strerror(errno)));
+    return input_error(fmt::format("cannot write the trace '{}': {}", file_, std::generic_category().message(errno)));
   }
 
   std::string file_;

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "config/plan_file.hpp"
+#include "planner/validate.hpp"
 
 namespace footlight::app {
 namespace {
@@ -35,25 +36,43 @@ Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, i
   return Done{};
 }
 
-/// The plan of the file if it is of the show with this hash. @param wanted  the user named it: it must fit
+/// Judges a plan that comes from a file as if nobody had done so before: the file has a digest and no signature, and a
+/// planner of another version may have made it.
+std::optional<Error> broken_limit(const Plan& plan, const std::string& file) {
+  const planner::Verdict verdict = planner::validate(plan);
+  if (verdict.valid()) return std::nullopt;
+  return refusal(fmt::format("the plan in '{}' breaks its limits: {} (plan it again)", file,
+                             verdict.first.empty() ? "see footlight measure" : verdict.first.front().text));
+}
+
+/// The plan of the file if it is of the show with this hash and keeps its limits.
+/// @param wanted  the user named it: it must fit
 Result<std::optional<Plan>> plan_from_file(Session& session, const std::string& file, const std::string& hash,
                                            bool wanted) {
+  const auto anew = [&](const std::string& why) {
+    session.note(why);
+    return std::optional<Plan>();
+  };
   std::error_code error;
   if (!wanted && !std::filesystem::exists(file, error)) {
-    session.note(fmt::format("planning, since '{}' is not there (footlight plan writes it)", file));
-    return std::optional<Plan>();
+    return anew(fmt::format("planning, since '{}' is not there (footlight plan writes it)", file));
   }
   auto plan = config::load_plan(file);
-  if (wanted && !plan) return std::move(plan).error();
-  const bool fits = plan && plan->show_hash == hash && plan->valid;
-  if (wanted && !fits) {
+  if (!plan) {
+    if (wanted) return std::move(plan).error();
+    return anew(fmt::format("planning again: {}", plan.error().message));
+  }
+  if (plan->show_hash != hash) {
+    if (!wanted) return anew(fmt::format("planning again, since the show has changed since '{}'", file));
     return input_error(
         fmt::format("'{}' was planned from another show, or before the show was changed (plan it again)", file));
   }
-  if (fits) return std::optional<Plan>(std::move(plan).value());
-  session.note(plan ? fmt::format("planning again, since the show has changed since '{}'", file)
-                    : fmt::format("planning again: {}", plan.error().message));
-  return std::optional<Plan>();
+  if (auto broken = broken_limit(*plan, file)) {
+    if (wanted) return *std::move(broken);
+    return anew(fmt::format("planning again: {}", broken->message));
+  }
+  plan->valid = true;
+  return std::optional<Plan>(std::move(plan).value());
 }
 
 Result<PlannedShow> read(Session& session, const PlanChoice& choice) {

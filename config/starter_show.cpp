@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 
+#include "config/show_file.hpp"
 #include "config/text_scan.hpp"
 #include "core/grid.hpp"
 
 namespace footlight::config {
 namespace {
 
-constexpr std::string_view kShow = R"(# A show for Footlight. Every key is explained in docs/show-file.md.
+constexpr std::string_view kShow = R"(# yaml-language-server: $schema=show.schema.json
+# A show for Footlight. Every key is explained in docs/show-file.md.
 #   footlight check  show.yaml     finds what is wrong, with line and column
 #   footlight plan   show.yaml     plans who walks where
 #   footlight dryrun show.yaml     plays it on simulated hardware
@@ -104,7 +106,8 @@ std::vector<std::pair<std::string, std::string>> starter_show(std::string_view t
   std::string show(kShow);
   constexpr std::string_view kMark = "@TITLE@";
   show.replace(show.find(kMark), kMark.size(), in_yaml(title.empty() ? "A new show" : title));
-  std::vector<std::pair<std::string, std::string>> out{{"show.yaml", std::move(show)}};
+  std::vector<std::pair<std::string, std::string>> out{{"show.yaml", std::move(show)},
+                                                       {"show.schema.json", show_schema()}};
   for (const Formation& formation : kFormations) out.emplace_back(formation.file, csv(formation));
   return out;
 }

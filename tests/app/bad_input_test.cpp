@@ -71,7 +71,7 @@ class BadInput : public test::StarterShow {
 TEST_F(BadInput, AMissingVideo) {
   ring_is_film("");
   expect_refused(2,
-                 "@/show.yaml:25:32: error: sections[1].from.video: the file \"film.avi\" is missing (looked for "
+                 "@/show.yaml:26:32: error: sections[1].from.video: the file \"film.avi\" is missing (looked for "
                  "@/film.avi)");
 }
 
@@ -79,28 +79,28 @@ TEST_F(BadInput, AVideoThatCannotBeDecoded) {
   folder_.write("s/film.avi", "this is no film");
   ring_is_film("");
   expect_refused(2,
-                 "@/show.yaml:25:5: error: sections[1].from.video: '@/film.avi' cannot be decoded as a video (a whole "
+                 "@/show.yaml:26:5: error: sections[1].from.video: '@/film.avi' cannot be decoded as a video (a whole "
                  "file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, GIF or MPEG, with a video stream)");
 }
 
 TEST_F(BadInput, AFrameSizeOfZero) {
   ring_is_film("two_frames_of_0x0.avi");
   expect_refused(2,
-                 "@/show.yaml:25:5: error: sections[1].from.video: '@/film.avi' has frames of 0 x 0 pixels (at least "
+                 "@/show.yaml:26:5: error: sections[1].from.video: '@/film.avi' has frames of 0 x 0 pixels (at least "
                  "1 x 1 is needed)");
 }
 
 TEST_F(BadInput, AVideoWithFewerThanTwoFrames) {
   ring_is_film("one_frame_8x8.avi");
   expect_refused(2,
-                 "@/show.yaml:25:5: error: sections[1].from.video: '@/film.avi' gives 1 frame here (a video needs at "
+                 "@/show.yaml:26:5: error: sections[1].from.video: '@/film.avi' gives 1 frame here (a video needs at "
                  "least two; a single picture is an image)");
 }
 
 TEST_F(BadInput, ARangeBeyondTheEndOfAVideo) {
   ring_is_film("moving_square_40x30_12_frames_10fps.avi", ", frames: 3-12");
   expect_refused(2,
-                 "@/show.yaml:25:5: error: sections[1].from.video: '@/film.avi' has 12 frames, frames 3 to 12 reach "
+                 "@/show.yaml:26:5: error: sections[1].from.video: '@/film.avi' has 12 frames, frames 3 to 12 reach "
                  "beyond its end (frames count from 0, the last is 11)");
 }
 
@@ -122,7 +122,7 @@ TEST_F(BadInput, MorePeopleThanTheFloorHolds) {
 TEST_F(BadInput, ASectionThatCannotBeWalkedAtItsSpeed) {
   make_unwalkable();
   expect_refused(3,
-                 "@/show.yaml:25:5: error: sections[1]: performer 8 would walk 6.1 m from H2 to G8 between count 9 and "
+                 "@/show.yaml:26:5: error: sections[1]: performer 8 would walk 6.1 m from H2 to G8 between count 9 and "
                  "count 10 at 10.1 m/s, 7.2 times the limit of 1.4 m/s (start the section 7 counts later, hold the one "
                  "before shorter, or slow the music to 13 counts a minute)");
 }
@@ -130,13 +130,13 @@ TEST_F(BadInput, ASectionThatCannotBeWalkedAtItsSpeed) {
 TEST_F(BadInput, SectionsThatOverlap) {
   replace("start: count 25", "start: count 8.5");
   expect_refused(2,
-                 "@/show.yaml:25:5: error: sections[1].start: section \"ring\" starts at count 8.5, and section "
+                 "@/show.yaml:26:5: error: sections[1].start: section \"ring\" starts at count 8.5, and section "
                  "\"line\" lasts until count 9 (start it at count 9 or later)");
 }
 
 TEST_F(BadInput, ACellOffTheGrid) {
   replace("  clearance: 0.5 m ", "  blocked: [A1, M2]\n  clearance: 0.5 m ");
-  expect_refused(2, "@/show.yaml:11:17: error: stage.blocked[1]: the cell M2 is off the grid (A1 to L8)");
+  expect_refused(2, "@/show.yaml:12:17: error: stage.blocked[1]: the cell M2 is off the grid (A1 to L8)");
 }
 
 TEST_F(BadInput, ACellOffTheGridInACellsFile) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
+#include "config/plan_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/starter_show.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -61,6 +62,11 @@ TEST(NewCommand, DoesNotTouchAFolderThatIsThere) {
   EXPECT_EQ(folder.names(), Names{});
 }
 
+TEST_F(StarterShow, CarriesTheSchemaThatItsFirstLineNames) {
+  EXPECT_THAT(folder_.read("s/show.yaml"), StartsWith("# yaml-language-server: $schema=show.schema.json\n"));
+  EXPECT_EQ(json::parse(folder_.read("s/show.schema.json"))["additionalProperties"], false);
+}
+
 TEST_F(StarterShow, ChecksWithoutAWord) {
   for (const Ran& ran : {footlight({"check", show_}), footlight({"check", "--no-media", show_})}) {
     EXPECT_EQ(ran.status, 0);
@@ -77,8 +83,8 @@ TEST_F(StarterShow, EveryErrorIsReportedWithItsPlace) {
   const Ran ran = footlight({"check", show_});
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.out, "");
-  EXPECT_EQ(ran.err, show_ + ":11:3: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n" + show_ +
-                         ":20:16: error: music.tempo: \"0\" is out of range (1 to 1000)\n");
+  EXPECT_EQ(ran.err, show_ + ":12:3: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n" + show_ +
+                         ":21:16: error: music.tempo: \"0\" is out of range (1 to 1000)\n");
   EXPECT_EQ(footlight({"plan", show_}).status, 2);
   EXPECT_EQ(files(), as_made_);
 }
@@ -91,7 +97,7 @@ TEST_F(StarterShow, AFilmThatCannotBeDecodedIsReportedAtItsSection) {
     const Ran ran = footlight({command, show_});
     EXPECT_EQ(ran.status, 2);
     EXPECT_EQ(ran.err,
-              show_ + ":25:5: error: sections[1].from.video: '" + folder_ / "s/film.mp4" +
+              show_ + ":26:5: error: sections[1].from.video: '" + folder_ / "s/film.mp4" +
                   "' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, GIF or "
                   "MPEG, with a video stream)\n");
     EXPECT_EQ(ran.out, "");
@@ -166,6 +172,27 @@ TEST_F(StarterShow, AHarmedPlanIsMadeAnewUnlessItWasAskedFor) {
   EXPECT_THAT(given.err, StartsWith("error: cannot use '" + plan_ + "': "));
 }
 
+/// A file with a right digest, as somebody with a tool of their own could write it.
+TEST_F(StarterShow, APlanThatBreaksItsLimitsNeverReachesAMarker) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  auto plan = config::load_plan(plan_);
+  ASSERT_TRUE(plan) << plan.error().message;
+  plan->tracks[1] = plan->tracks[0];
+  ASSERT_TRUE(plan->valid);
+  ASSERT_TRUE(config::save_plan(*plan, plan_));
+  const Ran given = footlight({"dryrun", show_, "--plan", plan_, "--trace", folder_ / "trace"});
+  EXPECT_EQ(given.status, 3);
+  EXPECT_EQ(given.out, "");
+  const std::string broken =
+      "the plan in '" + plan_ +
+      "' breaks its limits: performers 1 and 2 stand on one cell, A2, at 0.000 s (plan it again)\n";
+  EXPECT_EQ(given.err, "error: " + broken);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "trace"));
+  const Ran again = footlight({"dryrun", show_});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.err, "note: planning again: " + broken);
+}
+
 TEST_F(StarterShow, ExportsThreeFiles) {
   const Ran ran = footlight({"export", show_, "--csv", folder_ / "csv/deep", "-q"});
   EXPECT_EQ(ran.status, 0);
@@ -190,7 +217,7 @@ TEST_F(StarterShow, WhatCannotBeWalkedIsRefusedAndWritesNothing) {
   make_unwalkable();
   const Ran plan = footlight({"plan", show_});
   EXPECT_EQ(plan.status, 3);
-  EXPECT_THAT(plan.err, StartsWith(show_ + ":25:5: error: sections[1]: performer "));
+  EXPECT_THAT(plan.err, StartsWith(show_ + ":26:5: error: sections[1]: performer "));
   EXPECT_THAT(plan.out, HasSubstr("\nring "));
   EXPECT_EQ(files(), as_made_);
   const Ran check = footlight({"check", show_});

@@ -72,6 +72,18 @@ class Case(unittest.TestCase):
         return measured
 
 
+class Docs(Case):
+    def test_architecture_follows_a_cue_that_the_trace_of_vine_shows(self):
+        """Who changes the vine show or its plan takes the cue in docs/architecture.md anew."""
+        with open(os.path.join(ROOT, "docs", "architecture.md")) as f:
+            promised = [line for block in f.read().split("```trace\n")[1:] for line in block.split("```")[0].splitlines()]
+        self.assertGreater(len(promised), 8)
+        footlight("dryrun", os.path.join(ROOT, "shows/vine/show.yaml"), "--trace", self.path("trace"))
+        with open(self.path("trace")) as f:
+            shown = set(f.read().splitlines())
+        self.assertEqual([line for line in promised if line not in shown], [])
+
+
 class Shows(Case):
     def test_vine_is_planned_and_judged_well(self):
         measured = self.assert_judged_well(os.path.join(ROOT, "shows/vine/show.yaml"), 900)
