@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of the exact assignment, each timing with a check of the optimum: the duality gap, and the cost of the peer
-// where there is one. `peer/...` rows are LEMON's NetworkSimplex in the same run.
+// Time of the exact assignment. The duality gap is checked here; the costs of the peers are compared by scripts/bench.
+// `lemon/...` rows are LEMON's NetworkSimplex in the same process.
 #include <cmath>
+#include <fstream>
 #include <limits>
-#include <map>
 #include <string>
-#include <utility>
-
-#include <benchmark/benchmark.h>
-#include <sys/resource.h>
 
 #include "planner/assignment/assignment.hpp"
 #include "tests/bench/instances.hpp"
+#include "tests/bench/job.hpp"
 #ifdef FOOTLIGHT_HAS_LEMON
 #include "tests/bench/network_simplex.hpp"
 #endif
@@ -22,98 +19,101 @@ namespace {
 using planner::WalkCost;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+/// Dense arcs of the peers beyond these sizes need gigabytes and minutes.
+constexpr int kLargestForLemon = 3290;
+constexpr int kLargestForFiles = 10'000;
 
-std::string name(const char* who, Scene scene, WalkCost cost, int people) {
-  return std::string(who) + "/" + std::string(to_text(scene)) +
-         (cost == WalkCost::squared ? "/squared/" : "/euclidean/") + std::to_string(people);
+std::string job_of(Scene scene, WalkCost cost) {
+  return std::string("assignment ") + (cost == WalkCost::squared ? "squared " : "euclidean ") +
+         std::string(to_text(scene));
 }
 
-/// What the peer found in this run, by the name of the instance.
-std::map<std::string, double>& peer_costs() {
-  static std::map<std::string, double> costs;
-  return costs;
-}
-
-void report(benchmark::State& state, const std::string& key, double cost, double gap) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  state.counters["cost"] = cost;
-  state.counters["gap"] = gap;
-  state.counters["peak_mb"] = static_cast<double>(usage.ru_maxrss) / 1024;
-  if (std::abs(gap) > 1e-9 * cost) state.SkipWithError("the duality gap is not 0");
-  const auto peer = peer_costs().find(key);
-  state.counters["same_as_peer"] = peer == peer_costs().end() ? 0 : 1;
-  if (peer != peer_costs().end() && std::abs(peer->second - cost) > 1e-8 * (1 + cost)) {
-    state.SkipWithError("the peer's optimum is another one");
-  }
-}
-
-void assign_all(benchmark::State& state, Scene scene, WalkCost cost, int people, const std::string& key) {
-  const Instance instance = make_instance(scene, people);
+void assign_all(benchmark::State& state, const std::string& name, const Instance& instance, WalkCost cost,
+                double longest_m) {
   std::optional<planner::Assignment> found;
-  for (auto _ : state) {
-    found = planner::assign(instance.sources, instance.targets, cost, kNoLimit);
-    benchmark::DoNotOptimize(found);
-  }
-  report(state, key, found->cost, found->gap);
+  const auto work = [&] { found = planner::assign(instance.sources, instance.targets, cost, longest_m); };
+  state.counters["mb"] = peak_memory_once_mb(name, work);
+  for (auto _ : state) work();
+  if (!found) return state.SkipWithError("no assignment");
+  state.counters["cost"] = found->cost;
+  state.counters["gap"] = found->gap;
+  if (std::abs(found->gap) > 1e-9 * found->cost) state.SkipWithError("the duality gap is not 0");
 }
 
 /// What a transition of a show looks like: a formation and the same one a step on, nobody walks farther than five
 /// cells.
-void assign_short(benchmark::State& state, int people) {
+Instance short_walks(int people) {
   Instance instance = make_instance(Scene::flower_turned, people);
   instance.targets = instance.sources;
   for (Point& p : instance.targets) p = p + Point{p.y > 0 ? 2.0 : 3.0, p.y > 0 ? 1.0 : 0.0};
-  std::optional<planner::Assignment> found;
-  for (auto _ : state) {
-    found = planner::assign(instance.sources, instance.targets, WalkCost::squared, 5.0);
-    benchmark::DoNotOptimize(found);
-  }
-  if (!found) return state.SkipWithError("no assignment");
-  report(state, {}, found->cost, found->gap);
+  return instance;
 }
 
 #ifdef FOOTLIGHT_HAS_LEMON
-void network_simplex(benchmark::State& state, Scene scene, WalkCost cost, int people, const std::string& key) {
+void network_simplex(benchmark::State& state, Scene scene, WalkCost cost, int people) {
   const Instance instance = make_instance(scene, people);
-  for (auto _ : state) peer_costs()[key] = network_simplex_cost(instance, cost);
-  state.counters["cost"] = peer_costs()[key];
+  double found = 0;
+  // A second run only for its memory would take as long as the timing.
+  for (auto _ : state) {
+    state.counters["mb"] = peak_memory_mb([&] { found = network_simplex_cost(instance, cost); });
+  }
+  state.counters["cost"] = found;
 }
+
+void register_lemon(const Effort& effort, Scene scene, WalkCost cost, int people) {
+  if (people > kLargestForLemon) return;
+  const std::string name = job_name("lemon", job_of(scene, cost), people);
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) { network_simplex(state, scene, cost, people); })
+      ->Iterations(1)
+      ->Repetitions(people > 1000 ? 1 : effort.repetitions());
+}
+#else
+void register_lemon(const Effort&, Scene, WalkCost, int) {}
 #endif
 
-void register_all() {
-  for (const Scene scene : kScenes) {
-    for (const WalkCost cost : {WalkCost::squared, WalkCost::euclidean}) {
-      for (const int people : {100, 330, 1000, 3290, 10'000, 100'000}) {
-        const std::string key = name("", scene, cost, people);
-#ifdef FOOTLIGHT_HAS_LEMON
-        if (people <= 3290) {
-          benchmark::RegisterBenchmark(name("peer", scene, cost, people).c_str(), network_simplex, scene, cost, people,
-                                       key)
-              ->Unit(benchmark::kMillisecond)
-              ->Iterations(1);
-        }
-#endif
-        if (cost == WalkCost::euclidean && people > 10'000) continue;
-        benchmark::RegisterBenchmark(name("assign", scene, cost, people).c_str(), assign_all, scene, cost, people, key)
-            ->Unit(benchmark::kMillisecond);
-      }
-    }
-  }
-  for (const int people : {1000, 3290, 10'000}) {
-    benchmark::RegisterBenchmark(("assign/short_walks/squared/" + std::to_string(people)).c_str(), assign_short, people)
-        ->Unit(benchmark::kMillisecond);
+void register_scene(const Effort& effort, Scene scene, WalkCost cost) {
+  for (const int people : {100, 330, 1000, 3290, 5000, 10'000, 100'000}) {
+    if (people > 10'000 && (cost == WalkCost::euclidean || (effort.quick && scene != Scene::disk_to_ring))) continue;
+    const std::string name = job_name("ours", job_of(scene, cost), people);
+    auto* job = benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+      assign_all(state, name, make_instance(scene, people), cost, kNoLimit);
+    });
+    job->Repetitions(people > 10'000 ? 3 : effort.repetitions());
+    if (people > 10'000) job->Iterations(1);
+    register_lemon(effort, scene, cost, people);
   }
 }
 
 }  // namespace
-}  // namespace footlight::bench
 
-int main(int argc, char** argv) {
-  footlight::bench::register_all();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+void register_assignment(const Effort& effort) {
+  for (const Scene scene : kScenes) {
+    if (effort.quick && scene != Scene::disk_to_ring) continue;
+    for (const WalkCost cost : {WalkCost::squared, WalkCost::euclidean}) register_scene(effort, scene, cost);
+  }
+  for (const int people : {1000, 3290, 10'000}) {
+    const std::string name = job_name("ours", "assignment squared short_walks", people);
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+      assign_all(state, name, short_walks(people), WalkCost::squared, 5.0);
+    })->Repetitions(effort.repetitions());
+  }
 }
+
+void write_assignment_instances(const std::string& folder) {
+  for (const Scene scene : kScenes) {
+    for (const int people : {100, 330, 1000, 3290, 5000, 10'000, 100'000}) {
+      if (people > kLargestForFiles && scene != Scene::disk_to_ring) continue;
+      std::ofstream out(folder + "/" + std::string(to_text(scene)) + "_" + std::to_string(people) + ".txt");
+      const Instance instance = make_instance(scene, people);
+      out << people << "\n";
+      for (std::size_t i = 0; i < instance.sources.size(); ++i) {
+        const Point a = instance.sources[i];
+        const Point b = instance.targets[i];
+        out << a.x << " " << a.y << " " << b.x << " " << b.y << "\n";
+      }
+    }
+  }
+}
+
+}  // namespace footlight::bench

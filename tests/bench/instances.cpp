@@ -47,12 +47,22 @@ double outside_of_letters(double x, double y, double scale) {
   return nearest;
 }
 
+}  // namespace
+
 double outside_of_flower(double x, double y, double turn) {
   const double angle = std::atan2(y, x) + turn;
   return std::sqrt(x * x + y * y) / (0.28 + 0.14 * std::cos(5 * angle) + 0.03 * std::sin(11 * angle + 1));
 }
 
-}  // namespace
+Mask flower_picture(int width, int height, double turn) {
+  Mask mask(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (outside_of_flower(x + 0.5 - width / 2.0, y + 0.5 - height / 2.0, turn) < height) mask.set(x, y);
+    }
+  }
+  return mask;
+}
 
 std::string_view to_text(Scene scene) {
   switch (scene) {

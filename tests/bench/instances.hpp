@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/film.hpp"
 #include "core/grid.hpp"
 
 namespace footlight::bench {
@@ -23,5 +24,10 @@ inline constexpr Scene kScenes[] = {Scene::disk_to_ring, Scene::block_to_letters
 
 [[nodiscard]] std::string_view to_text(Scene scene);
 [[nodiscard]] Instance make_instance(Scene scene, int people);
+
+/// Distance from the middle of a flower of five petals, in petals: the flower of size s is where this is below s.
+[[nodiscard]] double outside_of_flower(double x, double y, double turn);
+/// The flower as large as the frame is high, turned by `turn` radians.
+[[nodiscard]] Mask flower_picture(int width, int height, double turn);
 
 }  // namespace footlight::bench
