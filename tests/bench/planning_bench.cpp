@@ -126,7 +126,7 @@ const TurningFlower& turning_flower() {
   static const auto show = [] {
     auto out = std::make_unique<TurningFlower>();
     const Floor floor(3290, 640, 480);
-    Film film{640, 480, 0.2};
+    Film film{640, 480, 0.2, 0, 128, false, {}};
     std::vector<CellIndex> now;
     std::vector<std::vector<Mark>> tracks(3290);
     PlannerOptions flat;

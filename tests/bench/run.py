@@ -103,7 +103,7 @@ def peer_runs(quick, folder):
             job = f"assignment {cost} {scene}"
             for size in (100, 330, 1000, 3290, 5000, 10_000, 100_000):
                 file = pathlib.Path(folder) / f"{scene}_{size}.txt"
-                if size <= 1000 or (size <= 5000 and scene == SCENES[0] and not quick):
+                if size <= 1000 or (scene == SCENES[0] and size <= (3290 if quick else 5000) and (cost == "squared" or not quick)):
                     runs["scipy", job, size] = python_peer("assignment", file, cost, 3 if size <= 1000 else 1)
                 if prototype and file.exists() and (size <= 10_000 or cost == "squared"):
                     measured = prototype_run(prototype, file, cost, size)
