@@ -29,8 +29,7 @@ std::string field(std::string_view text) {
 class Arrivals {
  public:
   explicit Arrivals(const Plan& plan) : by_cell_(static_cast<std::size_t>(plan.stage.grid.size())) {
-    for (std::size_t p = 0; p < plan.tracks.size(); ++p) {
-      const auto& track = plan.tracks[p];
+    for (const auto& track : plan.tracks) {
       for (std::size_t k = 1; k < track.size(); ++k) {
         if (track[k].cell != track[k - 1].cell) by_cell_[track[k].cell.at()].push_back(track[k].time);
       }
@@ -142,9 +141,9 @@ std::string marks_csv(const Plan& plan, const Show& show) {
       if (instant.empty()) {
         instant = exact(tidy_count(show.tempo.count_at(track[k].time))) + "," + exact_seconds(track[k].time);
       }
-      out += name + "," + instant + "," + places[track[k].cell.at()] + ",";
+      out.append(name).append(1, ',').append(instant).append(1, ',').append(places[track[k].cell.at()]).append(1, ',');
       out += look_of(plan, track, k, arrivals);
-      out += "," + field(plan.sections[section_at(plan, track[k].time)].name) + "\n";
+      out.append(1, ',').append(field(plan.sections[section_at(plan, track[k].time)].name)).append(1, '\n');
     }
   }
   return out;

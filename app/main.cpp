@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -33,7 +33,8 @@ constexpr const char* kFooter =
 /// Results that did not reach their reader are no success.
 int finish(int status, Session& session) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  return session.fail(input_error(std::string("cannot write the result to stdout: ") + std::strerror(errno)));
+  return session.fail(
+      input_error(std::string("cannot write the result to stdout: ") + std::generic_category().message(errno)));
 }
 
 Error unknown_command(const CLI::App& program, const std::string& word) {
@@ -72,7 +73,7 @@ int main(int argc, char** argv) {
   try {
     return footlight::app::run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: internal: %s (please report this)\n", error.what());
+    (void)std::fprintf(stderr, "error: internal: %s (please report this)\n", error.what());
     return 1;
   }
 }

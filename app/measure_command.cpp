@@ -7,6 +7,7 @@
 
 #include "app/measure_report.hpp"
 #include "app/plan_step.hpp"
+#include "core/check.hpp"
 #include "planner/measure.hpp"
 
 namespace footlight::app {
@@ -15,6 +16,7 @@ namespace {
 int run(Session& session, const PlanChoice& choice) {
   auto planned = plan_for(session, choice, true);
   if (!planned) return session.fail(planned.error());
+  FL_CHECK(planned->films.has_value());  // they were asked for
   const auto measures = planner::measure(planned->plan(), *planned->films, session.progress());
   session.clear_line();
   if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted while measuring"});

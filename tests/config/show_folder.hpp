@@ -2,35 +2,24 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
+#include <string_view>
 
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX
+#include "tests/support/temporary_folder.hpp"
 
 namespace footlight::config {
 
-/// A folder of its own for one test, gone afterwards.
+/// A folder of its own for one test, with files in folders of it.
 class ShowFolder {
  public:
-  ShowFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "footlight-show-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ShowFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ShowFolder(const ShowFolder&) = delete;
-  ShowFolder& operator=(const ShowFolder&) = delete;
-
   void write(const std::string& name, std::string_view content) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << content;
+    std::filesystem::create_directories(path(name).parent_path());
+    folder_.write(name, std::string(content));
   }
-  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   /// `text` with this folder's path left out, so that messages can be compared as a whole.
   [[nodiscard]] std::string without_folder(std::string text) const {
-    const std::string prefix = path_.string() + "/";
+    const std::string prefix = folder_.path().string() + "/";
     for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
       text.erase(at, prefix.size());
     }
@@ -38,7 +27,7 @@ class ShowFolder {
   }
 
  private:
-  std::filesystem::path path_;
+  test::TemporaryFolder folder_;
 };
 
 }  // namespace footlight::config
