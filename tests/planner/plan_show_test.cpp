@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 
 #include "core/rng.hpp"
+#include "planner/schedule/ways.hpp"
 #include "planner/validate.hpp"
 #include "tests/support/films.hpp"
 
@@ -108,6 +109,54 @@ TEST(PlanShow, KeepsOffBlockedCellsAndGoesAroundThem) {
   const auto planned = plan_show(show, {growing_film()});
   ASSERT_TRUE(planned) << planned.error().message;
   expect_sound(*planned, show);
+}
+
+/// As many cells as performers on which somebody may stand: spread anywhere or close together around a point.
+CellsSource anywhere(Rng& rng, const Show& show) {
+  const Grid& grid = show.stage.grid;
+  const Ways ways(show.stage, show.stage.clearance_m / 2);
+  const bool close = rng.below(2) == 0;
+  const Point middle = grid.centre(CellIndex::of(rng.below(static_cast<std::uint64_t>(grid.size()))));
+  std::vector<std::pair<double, CellIndex>> free;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(grid.size()); ++i) {
+    const CellIndex cell = CellIndex::of(i);
+    if (ways.can_stand(cell)) free.emplace_back(close ? distance(grid.centre(cell), middle) : rng.uniform(), cell);
+  }
+  std::sort(free.begin(), free.end());
+  CellsSource source{"cells.csv", {}, false};
+  for (std::size_t p = 0; p < show.performers.size(); ++p) source.cells.push_back(free[p].second);
+  return source;
+}
+
+TEST(PlanShow, ASetPieceInTheMiddleIsWalkedAroundWhereThereIsTime) {
+  EXPECT_TRUE(rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    const bool from_film = rng.below(3) == 0;
+    const int most = from_film ? 48 : 90;
+    Show show = show_with(1 + static_cast<int>(rng.below(most)), static_cast<GridKind>(rng.below(3)), 16, 12);
+    if (from_film) show.stage.reserve = cells_in(show.stage.grid, "A1:D12");
+    constexpr const char* kSetPieces[] = {"H4:I9", "D6:M7", "G5:J8", "H3:H12"};
+    show.stage.blocked = cells_in(show.stage.grid, kSetPieces[rng.below(4)]);
+    // Three times the way from corner to corner.
+    const double counts = std::ceil(3 * 26 / show.stage.max_speed_mps * 2);
+    std::vector<std::optional<Film>> films(2);
+    double start = 1;
+    for (int s = 0; s < 2; ++s) {
+      if (s == 0 && from_film) {
+        show.sections.push_back(section_of("film", video(), start, 40, 0, 31));
+        films[0] = tests::film_of(20, [](int f) { return tests::disc(48, 36, 10 + f, 18, 12); });
+        start += 40;
+      } else {
+        show.sections.push_back(section_of("cells", anywhere(rng, show), start, 0, 2, 31));
+        start += 2;
+      }
+      start += counts;
+    }
+    const auto planned = plan_show(show, films);
+    RC_ASSERT((planned ? "" : planned.error().message) == std::string());
+    RC_ASSERT(planned->refusal == std::vector<std::string>{});
+    RC_ASSERT(planned->plan.valid);
+  }));
 }
 
 TEST(PlanShow, AnyFilmIsValidOrTheDrawingGivesWay) {
