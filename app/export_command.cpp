@@ -39,6 +39,10 @@ int run(Session& session, const Options& options) {
                                                        {"formations.csv", formations_csv(plan)},
                                                        {"stage.json", stage_json(plan, show)}};
   for (const auto& [name, content] : files) {
+    const std::string file = (std::filesystem::path(options.csv) / name).string();
+    if (auto spared = spare_inputs(planned->loaded, file); !spared) return session.fail(spared.error());
+  }
+  for (const auto& [name, content] : files) {
     if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted while exporting"});
     auto done = config::write_file(std::filesystem::path(options.csv) / name, content);
     if (!done) return session.fail(done.error());

@@ -2,6 +2,8 @@
 #include "app/load.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -78,6 +80,16 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
   if (!settled) return input_error(without_last_newline(settled.error().to_text()));
   session.tell("decoding", 1);
   return films;
+}
+
+Status<> spare_inputs(const config::LoadedShow& loaded, const std::string& output) {
+  std::error_code error;
+  for (const std::string& file : loaded.files) {
+    if (std::filesystem::equivalent(file, output, error)) {
+      return input_error(fmt::format("'{}' is a file that the show reads (give the output another name)", output));
+    }
+  }
+  return Done{};
 }
 
 void take_durations(Show& show, const Plan& plan) {

@@ -23,6 +23,9 @@ using Films = std::vector<std::optional<Film>>;
 /// overlap. All that is wrong is reported at once, each at its section.
 [[nodiscard]] Result<Films> decode_films(Session& session, config::LoadedShow& loaded);
 
+/// Refuses an output that would overwrite a file that the show reads.
+[[nodiscard]] Status<> spare_inputs(const config::LoadedShow& loaded, const std::string& output);
+
 /// Gives videos without a duration the length they have in a plan of this very show, without decoding them.
 void take_durations(Show& show, const Plan& plan);
 

@@ -16,6 +16,7 @@ namespace footlight::app {
 namespace {
 
 int run(Session& session, const std::string& folder, std::string title) {
+  if (folder.empty()) return session.fail(input_error("the new show's folder needs a name (footlight new my-show)"));
   const std::filesystem::path place(folder);
   std::error_code error;
   if (std::filesystem::exists(place, error)) {

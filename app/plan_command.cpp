@@ -47,6 +47,7 @@ int run(Session& session, const Options& options) {
   if (!planned) return session.fail(planned.error());
   const auto refused = refusal_of(planned->planned);
   const std::string file = options.output.empty() ? plan_file_beside(options.choice.show) : options.output;
+  if (auto spared = spare_inputs(planned->loaded, file); !spared) return session.fail(spared.error());
   if (!refused) {
     if (auto done = config::save_plan(planned->plan(), file); !done) return session.fail(done.error());
   }

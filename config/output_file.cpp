@@ -48,11 +48,9 @@ Error cannot_read(const std::filesystem::path& file, std::string_view why) {
   return input_error(fmt::format("cannot read '{}': {}", file.string(), why));
 }
 
-}  // namespace
-
-Status<> write_file(const std::filesystem::path& file, std::string_view content) {
+/// The new content under the old name, or the old content.
+Status<> replace_file(const std::filesystem::path& file, std::string_view content) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (std::error_code error; std::filesystem::is_directory(file, error)) return cannot_write(file, EISDIR);
   const std::string temporary = (folder / fmt::format(".{}.{}.tmp", file.filename().string(), getpid())).string();
   Descriptor out(open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666));
   if (out.get() < 0) return cannot_write(file, errno);
@@ -66,6 +64,23 @@ Status<> write_file(const std::filesystem::path& file, std::string_view content)
   const Descriptor place(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (place.get() >= 0) fsync(place.get());
   return Done{};
+}
+
+}  // namespace
+
+Status<> write_file(const std::filesystem::path& name, std::string_view content) {
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) return cannot_write(name, EISDIR);
+  // A link keeps being a link; what it names is written.
+  const bool is_link = std::filesystem::is_symlink(name, error);
+  const std::filesystem::path file = is_link ? std::filesystem::weakly_canonical(name, error) : name;
+  // Devices and pipes are written to and stay what they are.
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+    Descriptor out(open(file.c_str(), O_WRONLY | O_CLOEXEC));
+    if (out.get() < 0 || !write_all(out.get(), content) || !out.close()) return cannot_write(name, errno);
+    return Done{};
+  }
+  return replace_file(file, content);
 }
 
 Status<> read_blocks(const std::filesystem::path& file, const std::function<void(std::string_view)>& take) {

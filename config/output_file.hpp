@@ -12,7 +12,8 @@
 namespace footlight::config {
 
 /// Writes a file whole or not at all: to a temporary name in the same folder, to the disk, then renamed. After an
-/// error, an interruption or a loss of power `file` is what it was before. Errors (ErrorKind::input): the folder or the
+/// error, an interruption or a loss of power `file` is what it was before. A link is followed; a device or a pipe is
+/// written to as it is. Errors (ErrorKind::input): the folder or the
 /// disk will not take it, with the system's reason.
 [[nodiscard]] Status<> write_file(const std::filesystem::path& file, std::string_view content);
 

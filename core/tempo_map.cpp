@@ -48,7 +48,11 @@ double TempoMap::count_at(Instant instant) const {
   const double s = to_seconds(instant);
   const auto after = std::upper_bound(change_s_.begin() + 1, change_s_.end(), s);
   const std::size_t i = static_cast<std::size_t>(after - change_s_.begin()) - 1;
-  return changes_[i].count + (s - change_s_[i]) * changes_[i].bpm / 60.0;
+  const double count = changes_[i].count + (s - change_s_[i]) * changes_[i].bpm / 60.0;
+  // Instants are whole nanoseconds, so whole counts come back a little off; a count with few decimals that lies on this
+  // very nanosecond is what was meant.
+  const double plain = std::round(count * 1e6) / 1e6;
+  return at(plain) == instant ? plain : count;
 }
 
 double TempoMap::bpm_at(double count) const {

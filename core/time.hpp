@@ -24,7 +24,7 @@ inline constexpr Instant kNever = Instant::max();
 /// Nearest nanosecond. @param value s, |value| < 9e9
 [[nodiscard]] inline Duration seconds(double value) { return Duration(std::llround(value * 1e9)); }
 [[nodiscard]] inline Instant instant_at(double value_s) { return Instant(seconds(value_s)); }
-[[nodiscard]] inline double to_seconds(Duration duration) { return static_cast<double>(duration.count()) * 1e-9; }
+[[nodiscard]] inline double to_seconds(Duration duration) { return static_cast<double>(duration.count()) / 1e9; }
 [[nodiscard]] inline double to_seconds(Instant instant) { return to_seconds(instant.time_since_epoch()); }
 [[nodiscard]] constexpr Duration milliseconds(std::int64_t value) { return Duration(value * 1'000'000); }
 [[nodiscard]] constexpr Duration microseconds(std::int64_t value) { return Duration(value * 1'000); }

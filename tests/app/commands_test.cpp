@@ -261,6 +261,20 @@ TEST_F(StarterShow, AResultThatNobodyCanReadIsNoSuccess) {
   EXPECT_EQ(ran.err, "error: cannot write the result to stdout: No space left on device\n");
 }
 
+TEST_F(StarterShow, AnOutputNeverOverwritesWhatTheShowReads) {
+  const std::string before = folder_.read("s/show.yaml");
+  const Ran ran = footlight({"plan", show_, "-q", "-o", show_});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: '" + show_ + "' is a file that the show reads (give the output another name)\n");
+  EXPECT_EQ(folder_.read("s/show.yaml"), before);
+}
+
+TEST_F(StarterShow, ANewShowWithoutANameIsRefused) {
+  const Ran ran = footlight({"new", ""});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: the new show's folder needs a name (footlight new my-show)\n");
+}
+
 TEST_F(StarterShow, AFolderThatCannotBeWrittenIsNamed) {
   const Ran ran = footlight({"plan", show_, "-o", folder_ / "no/such/x.plan"});
   EXPECT_EQ(ran.status, 2);

@@ -29,6 +29,23 @@ TEST(OutputFile, NamesTheFolderThatIsMissing) {
   EXPECT_EQ(result.error(), input_error("cannot write '" + folder / "no/a" + "': No such file or directory"));
 }
 
+TEST(OutputFile, FollowsALinkAndLeavesItALink) {
+  const TemporaryFolder folder;
+  folder.write("target", "old");
+  std::filesystem::create_symlink(folder / "target", folder / "link");
+  ASSERT_TRUE(write_file(folder / "link", "new"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(folder.read("target"), "new");
+}
+
+TEST(OutputFile, WritesToADeviceAndLeavesItADevice) {
+  const auto full = write_file("/dev/full", "x");
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error(), input_error("cannot write '/dev/full': No space left on device"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+  EXPECT_TRUE(write_file("/dev/null", "x"));
+}
+
 TEST(OutputFile, DoesNotReplaceAFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "a");

@@ -102,6 +102,13 @@ TEST(TempoMap, RefusesWhatIsNoTempoMap) {
   EXPECT_EQ(message({{1, 120}, {std::nan(""), 90}}, 4), input_error("the counts of tempo changes increase"));
 }
 
+TEST(TempoMap, WholeCountsComeBackWhole) {
+  const auto map = TempoMap::from({{1, 97}, {33, 113}, {101, 131}}, 4);
+  ASSERT_TRUE(map);
+  for (int count = 1; count < 2000; ++count) EXPECT_EQ(map->count_at(map->at(count)), count);
+  EXPECT_EQ(map->count_at(map->at(17.25)), 17.25);
+}
+
 TEST(TempoMapDeathTest, ATempoOfZeroIsAProgrammerError) { EXPECT_DEATH(TempoMap(0.0), "bpm > 0"); }
 
 }  // namespace
