@@ -65,7 +65,9 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
     auto film = decode(session, section);
     if (!film) continue;
     if (film->has_value()) {
-      films[i] = std::move(**film);
+      Film& whole = **film;
+      lengths[i] = config::FilmLength{static_cast<int>(whole.frames.size()), whole.fps};
+      films[i] = std::move(whole);
     } else if (film->error().kind != ErrorKind::input) {
       return film->error();
     } else {
@@ -73,7 +75,6 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
       diagnostics.error(section.position, key_path(show, section, video ? ".from.video" : ".from.image"),
                         film->error().message);
     }
-    if (films[i]) lengths[i] = {static_cast<int>(films[i]->frames.size()), films[i]->fps};
   }
   if (diagnostics.has_errors()) return input_error(without_last_newline(diagnostics.to_text()));
   const auto settled = config::settle_film_lengths(show, lengths);
