@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/marker_watch.hpp"
 #include "controller/bus_loop.hpp"
 #include "controller/cue_engine.hpp"
 #include "controller/cue_list.hpp"
@@ -25,8 +26,8 @@ using controller::CueEngine;
 using controller::CuePlay;
 using controller::CueSchedule;
 
-constexpr Duration kSample = milliseconds(20);
 constexpr Duration kPostRoll = milliseconds(2500);     // time for the last lamps to be right
+constexpr Duration kRefresh = milliseconds(2000);      // every marker is looked at this often
 constexpr Duration kHeartbeat = milliseconds(250);     // T0 of the trust model
 constexpr Duration kCompareAhead = microseconds(200);  // before the first latch of the next switch is handed over
 constexpr Duration kPaceStep = milliseconds(50);
@@ -69,15 +70,16 @@ class DryRun {
   void sample();
   void compare_when_due();
   void compare(std::size_t k);
+  void play_to_the_end();
+  [[nodiscard]] bool told_to_stop() const;
+  [[nodiscard]] bool recovered() const;
+  void recover();
   void say_moment(const BusTarget& target);
   void keep_pace(Instant next) const;
   [[nodiscard]] bool exempt(NodeIndex node) const;
-  [[nodiscard]] bool dead(NodeIndex node) const;
   [[nodiscard]] LookIndex should(std::size_t k, NodeIndex node, std::size_t channel) const {
     return schedule_->looks_of(k, node)[channel];
   }
-  template <class Visit>
-  void for_markers(Visit visit) const;
   DryRunReport report();
 
   const Show& show_;
@@ -90,6 +92,7 @@ class DryRun {
   sim::SimulatedRig simulated_;
   std::vector<std::unique_ptr<drivers::Driver>> drivers_;
   std::optional<CueSchedule> schedule_;
+  std::optional<MarkerWatch> watch_;
   std::optional<CueEngine> engine_;
   std::vector<std::unique_ptr<BusLoop>> loops_;
   std::vector<Instant> wishes_;
@@ -102,9 +105,7 @@ class DryRun {
   Instant ends_at_ = kNever;
   std::optional<std::size_t> compared_;
   std::optional<std::size_t> told_;
-  std::uint64_t samples_ = 0;
-  std::uint64_t right_ = 0;
-  std::uint64_t wrong_ = 0;
+  Duration recovery_{};
   DryRunReport report_;
 };
 
@@ -138,6 +139,9 @@ Status<> DryRun::connect() {
         std::make_unique<BusLoop>(*schedule_, drivers::node_addresses(rig_, BusIndex::of(b)), *drivers_[b]));
   }
   wishes_.assign(loops_.size(), kStart);
+  recovery_ = 2 * kRefresh;
+  for (const auto& loop : loops_) recovery_ = std::max(recovery_, 2 * loop->suspect_time());
+  watch_.emplace(rig_, *schedule_, simulated_, latch_ahead_ + kCompareAhead);
   std::vector<Duration> notices(plays_.size());
   const auto& switches = schedule_->switches();
   for (std::size_t k = 1; k < switches.size(); ++k) {
@@ -151,11 +155,19 @@ Status<> DryRun::connect() {
 Result<DryRunReport> DryRun::run() {
   if (Status<> connected = connect(); !connected) return connected.error();
   go_at_ = show_starts_;
+  play_to_the_end();
+  if (told_to_stop()) return Error{ErrorKind::interrupted, "interrupted"};
+  compare(schedule_->switches().size() - 1);
+  DryRunReport report = this->report();
+  recover();
+  if (told_to_stop()) return Error{ErrorKind::interrupted, "interrupted"};
+  report.wrong_after_recovery = report_.wrong_after_recovery;
+  return report;
+}
+
+void DryRun::play_to_the_end() {
   int at_once = 0;
-  while (clock_.now() < ends_at_) {
-    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
-      return Error{ErrorKind::interrupted, "interrupted"};
-    }
+  while (clock_.now() < ends_at_ && !told_to_stop()) {
     tick();
     Instant next = next_instant();
     // A driver that has more to read asks to be called again at once; time must go on all the same.
@@ -165,8 +177,26 @@ Result<DryRunReport> DryRun::run() {
     keep_pace(next);
     simulated_.advance_to(next);
   }
-  compare(schedule_->switches().size() - 1);
-  return report();
+}
+
+bool DryRun::told_to_stop() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+
+bool DryRun::recovered() const {
+  return simulated_.faults_end() != kNever && clock_.now() >= simulated_.faults_end() + recovery_;
+}
+
+/// The show is over and its last lamps stay lit: without further faults all of them have to be right soon.
+void DryRun::recover() {
+  if (options_.faults == sim::Faults{}) return;
+  simulated_.end_faults();
+  sample_at_ = kNever;
+  ends_at_ = std::max(clock_.now(), simulated_.faults_end() + recovery_);
+  play_to_the_end();
+  const std::size_t last = schedule_->switches().size() - 1;
+  watch_->for_markers([&](NodeIndex node, std::size_t channel) {
+    if (simulated_.shown(node, static_cast<int>(channel)) != should(last, node, channel))
+      ++report_.wrong_after_recovery;
+  });
 }
 
 void DryRun::tick() {
@@ -193,7 +223,7 @@ void DryRun::press_go() {
   if (go_at_ == kNever) go_at_ = now + controller::kShortestHold;
   if (now < go_at_) return;
   if (engine_->standby() == std::size_t{0}) {
-    sample_at_ = now + kSample / 2;
+    sample_at_ = now + MarkerWatch::kSample / 2;
     for (std::size_t b = 0; b < rig_.buses.size(); ++b) use_before_.push_back(simulated_.use(BusIndex::of(b)));
   }
   engine_->go(now);
@@ -206,30 +236,9 @@ Instant DryRun::next_instant() const {
   return next;
 }
 
-template <class Visit>
-void DryRun::for_markers(Visit visit) const {
-  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
-    const auto node = NodeIndex::of(n);
-    if (dead(node)) continue;
-    for (std::size_t c = 0; c < rig_.nodes[n].channels.size(); ++c) {
-      if (rig_.nodes[n].channels[c].kind != Channel::Kind::unused) visit(node, c);
-    }
-  }
-}
-
 void DryRun::sample() {
-  sample_at_ += kSample;
-  const std::size_t k = engine_->target().current;
-  for_markers([&](NodeIndex node, std::size_t channel) {
-    const LookIndex shown = simulated_.shown(node, static_cast<int>(channel));
-    const LookIndex planned = should(k, node, channel);
-    ++samples_;
-    if (shown == planned) {
-      ++right_;
-    } else if (shown != kNoGuidance && (k == 0 || shown != should(k - 1, node, channel))) {
-      ++wrong_;
-    }
-  });
+  sample_at_ += MarkerWatch::kSample;
+  watch_->sample(clock_.now(), engine_->target());
   if (options_.progress) {
     const double all = std::max(1e-9, to_seconds(plays_.back().to - plays_.front().from));
     options_.progress(to_seconds(engine_->position() - plays_.front().from) / all);
@@ -254,10 +263,11 @@ void DryRun::compare(std::size_t k) {
   // The opening is nobody's cue: its lamps count like those of any switch.
   const bool ends_cue = k + 1 == switches.size() || (switches[k].cue && switches[k + 1].cue != switches[k].cue);
   CueReport cue;
-  for_markers([&](NodeIndex node, std::size_t channel) {
+  watch_->for_markers([&](NodeIndex node, std::size_t channel) {
     const LookIndex shown = simulated_.shown(node, static_cast<int>(channel));
     const LookIndex planned = should(k, node, channel);
     if (shown == planned) return;
+    if (recovered()) ++report_.wrong_after_recovery;
     if (exempt(node)) {
       ++cue.exempt;
       return;
@@ -289,8 +299,6 @@ bool DryRun::exempt(NodeIndex node) const {
   });
 }
 
-bool DryRun::dead(NodeIndex node) const { return std::ranges::binary_search(simulated_.dead(), node); }
-
 void DryRun::say_moment(const BusTarget& target) {
   if (!options_.moment || told_ == target.current) return;
   told_ = target.current;
@@ -304,7 +312,7 @@ void DryRun::say_moment(const BusTarget& target) {
 void DryRun::keep_pace(Instant next) const {
   if (options_.pace == nullptr) return;
   while (options_.pace->now() < next) {
-    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return;
+    if (told_to_stop()) return;
     std::this_thread::sleep_for(std::min(kPaceStep, next - options_.pace->now()));
   }
 }
@@ -312,9 +320,11 @@ void DryRun::keep_pace(Instant next) const {
 DryRunReport DryRun::report() {
   report_.switches = schedule_->switches().size();
   report_.looks = schedule_->looks().size();
-  for_markers([&](NodeIndex, std::size_t) { ++report_.markers; });
-  report_.right_share = samples_ == 0 ? 1 : static_cast<double>(right_) / static_cast<double>(samples_);
-  report_.wrong_s = static_cast<double>(wrong_) * to_seconds(kSample);
+  report_.markers = watch_->markers();
+  report_.right_share = watch_->right_share();
+  report_.wrong = watch_->wrong();
+  report_.wrong_s = watch_->wrong_s();
+  report_.recovery_s = to_seconds(recovery_);
   report_.duration_s = to_seconds(plays_.back().to - plays_.front().from);
   report_.run_s = to_seconds(clock_.now() - show_starts_);
   report_.confusion_before = schedule_->confusion().before;

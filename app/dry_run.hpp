@@ -66,7 +66,13 @@ struct DryRunReport {
   std::uint64_t wrong_final = 0;  ///< markers not right at the end of a cue, all cues
   std::uint64_t late = 0;         ///< markers not right at the end of a switch that ends no cue
   double right_share = 0;  ///< marker-time that showed the planned look, sampled every 20 ms; dead nodes left out
-  double wrong_s = 0;      ///< marker-time that showed neither the planned look, the one before nor NO-GUIDANCE
+  /// Markers seen to begin to show what is neither their planned look, the one before, nor NO-GUIDANCE, nor kept in
+  /// HOLD.
+  std::uint64_t wrong = 0;
+  double wrong_s = 0;  ///< marker-time in which that was so
+  /// Markers of healthy nodes not right at the end of a switch, two refresh periods after the last fault or later.
+  std::uint64_t wrong_after_recovery = 0;
+  double recovery_s = 0;  ///< two refresh periods: from the last fault until every marker must be right
   std::uint64_t deliveries = 0;
   std::uint64_t retries = 0;
   double duration_s = 0;  ///< of show

@@ -51,7 +51,10 @@ std::string dry_run_json(const DryRunReport& report) {
                       {"switches", report.switches},
                       {"looks", report.looks},
                       {"late", report.late},
+                      {"wrong", report.wrong},
                       {"wrong_s", report.wrong_s},
+                      {"wrong_after_recovery", report.wrong_after_recovery},
+                      {"recovery_s", report.recovery_s},
                       {"confusion", {{"before", report.confusion_before}, {"after", report.confusion_after}}},
                       {"reboots", report.reboots},
                       {"dead", report.dead},
@@ -83,7 +86,10 @@ std::string dry_run_text(const DryRunReport& report) {
   }
   text += fmt::format("{} deliveries, {} retries; {:.3f} % of marker-time right; {} markers late at a switch\n",
                       report.deliveries, report.retries, report.right_share * 100, report.late);
-  text += fmt::format("{} markers wrong at the end of a cue\n", report.wrong_final);
+  text += fmt::format(
+      "{} markers wrong at the end of a cue, {} seen with a look of another moment, {} wrong {:.1f} s after "
+      "the last fault\n",
+      report.wrong_final, report.wrong, report.wrong_after_recovery, report.recovery_s);
   return text;
 }
 

@@ -13,6 +13,9 @@ constexpr double kPollShare = 0.2;                 // of the bus, for the promis
 constexpr Duration kFirstBackoff = milliseconds(50);
 constexpr Duration kAskAgain = milliseconds(250);
 constexpr Duration kLongestBackoff = milliseconds(1000);
+constexpr Duration kHopeful = milliseconds(2500);  // T2: so long a node that is silent is asked more often
+constexpr Duration kHopefulBackoff = milliseconds(100);
+constexpr Duration::rep kHopefulShare = 3;  // and costs at most a quarter of the bus's idle time
 constexpr std::uint8_t kMissesToQuarantine = 3;
 constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
 constexpr std::uint8_t kUploads = 2;       // uploads have no receipt
@@ -85,7 +88,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
   consider(table_refresh_at_);
   consider(down_until_);
   for (const NodeState& node : nodes_) {
-    if (node.quarantined && !can_.pushes_status) consider(node.ask_at);
+    if (node.misses > 0 && !can_.pushes_status) consider(node.ask_at);
   }
   if (refused_) consider(now_ + kRetryBusy);
   return earliest;
@@ -244,6 +247,7 @@ void BusLoop::on_confirmed(NodeState& node) noexcept {
 void BusLoop::on_miss(NodeState& node) noexcept {
   ++counters_.misses;
   node.in_flight = false;
+  if (node.misses == 0) node.silent_since = now_;
   if (can_.pushes_status) {
     // Unconfirmed: it gets preload and latch again. Who was right before has most often lost an answer, no more; it is
     // asked again soon.
@@ -255,9 +259,8 @@ void BusLoop::on_miss(NodeState& node) noexcept {
     node.verify = can_.readback;  // a question was missed: ask again at once
   }
   if (node.quarantined) {
-    node.backoff = std::min(2 * node.backoff, kLongestBackoff);
-    node.ask_at = now_ + node.backoff;
     node.verify = false;
+    wait_after_miss(node);
     return;
   }
   if (++node.misses < kMissesToQuarantine) return;
@@ -268,6 +271,19 @@ void BusLoop::on_miss(NodeState& node) noexcept {
   node.pending = kNone;
   node.offered = kNone;
   node.backoff = kFirstBackoff;
+  node.ask_at = now_ + node.backoff;
+}
+
+bool BusLoop::hopeful(const NodeState& node) const noexcept { return now_ - node.silent_since < kHopeful; }
+
+/// A node that has answered a moment ago is more likely to be misheard than dead: a bad line takes many answers in a
+/// row, and a second between two questions would leave its lamps wrong for as long.
+void BusLoop::wait_after_miss(NodeState& node) noexcept {
+  Duration most = kLongestBackoff;
+  if (hopeful(node)) {
+    most = std::max(kHopefulBackoff, kHopefulShare * longest_[static_cast<std::size_t>(Operation::ask)]);
+  }
+  node.backoff = std::min(2 * node.backoff, most);
   node.ask_at = now_ + node.backoff;
 }
 

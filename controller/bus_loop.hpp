@@ -83,13 +83,15 @@ class BusLoop final : private drivers::EventSink {
     std::size_t offered = kNone;  ///< switch preloaded last
     bool in_flight = false;       ///< a preload is under way
     std::size_t pending = kNone;  ///< switch whose preload is receipted and not yet latched
-    Instant ask_at;               ///< in quarantine
+    Instant silent_since;         ///< first of the misses in a row
+    Instant ask_at;               ///< not before, after a miss
     Duration backoff{};           ///< in quarantine
   };
 
   void on_event(const drivers::DeviceEvent& event) override;
   void on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept;
   void on_miss(NodeState& node) noexcept;
+  void wait_after_miss(NodeState& node) noexcept;
   void on_boot(NodeState& node) noexcept;
   void on_confirmed(NodeState& node) noexcept;
   [[nodiscard]] NodeState* find(NodeIndex node) noexcept;
@@ -108,7 +110,8 @@ class BusLoop final : private drivers::EventSink {
   bool verify() noexcept;
   bool repair() noexcept;
   bool preload_next() noexcept;
-  bool ask_quarantined() noexcept;
+  bool ask_quarantined(bool hopeful_only) noexcept;
+  [[nodiscard]] bool hopeful(const NodeState& node) const noexcept;
   bool refresh() noexcept;
 
   bool send_preload(NodeState& node, std::size_t k) noexcept;

@@ -28,8 +28,8 @@ bool BusLoop::act() noexcept {
     return started_;
   }
   if (in_hurry() && preload_next()) return true;
-  return upload(true) || verify() || repair() || (can_.sequenced_latch && preload_next()) || ask_quarantined() ||
-         refresh() || upload(false);
+  return upload(true) || verify() || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
+         ask_quarantined(false) || refresh() || upload(false);
 }
 
 bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration time) noexcept {
@@ -222,11 +222,11 @@ bool BusLoop::send_ask(NodeState& node) noexcept {
 
 // ---- idle time
 
-bool BusLoop::ask_quarantined() noexcept {
+bool BusLoop::ask_quarantined(bool hopeful_only) noexcept {
   // Who answers a latch by itself needs no question.
   if (can_.pushes_status || !fits(std::max(time_of(Operation::ask), time_of(Operation::preload)))) return false;
   for (NodeState& node : nodes_) {
-    if (!node.quarantined || node.in_flight || now_ < node.ask_at) continue;
+    if (!node.quarantined || node.in_flight || now_ < node.ask_at || (hopeful_only && !hopeful(node))) continue;
     if (can_.readback) {
       if (!send_ask(node)) return false;
     } else if (!may_latch_current() || !send_preload(node, current_)) {

@@ -9,7 +9,7 @@
 
 namespace footlight::sim {
 
-/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,reboot=2,dead=1"
+/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,reboot=2,dead=1,until=80%"
 struct Faults {
   double loss = 0;       ///< share of frames that a receiver does not hear, 0..0.3
   double corrupt = 0;    ///< share of frames with a flipped bit, 0..0.3
@@ -17,6 +17,7 @@ struct Faults {
   Duration delay{};      ///< most that an answer is late, on top of the turnaround; 0..1 s
   int reboot = 0;        ///< restarts of random nodes at random instants of the show, 0..10,000
   int dead = 0;          ///< nodes that never answer and never light, 0..10,000
+  double until = 1;      ///< share of the show after which nothing is drawn any more, 0..1; the dead stay dead
   /// Shares are "5%" or "0.05", times carry us, ms or s. Errors name the part that is wrong and what is possible.
   static Result<Faults> parse(std::string_view text);
 
@@ -28,6 +29,8 @@ class Chance {
  public:
   Chance(const Faults& faults, Rng rng) : faults_(faults), rng_(rng) {}
 
+  /// From here on nothing goes wrong.
+  void end() { faults_ = Faults{}; }
   bool lost() { return happens(faults_.loss); }
   bool corrupted() { return happens(faults_.corrupt); }
   bool duplicated() { return happens(faults_.duplicate); }

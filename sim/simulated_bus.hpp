@@ -44,6 +44,10 @@ class SimulatedBus : public Actor {
   virtual void begin() {
     for (auto& node : nodes_) node->power_on();
   }
+  void end_faults() {
+    around_.faults.end();
+    around_.timing.end();
+  }
   virtual void power_off(std::size_t slot) = 0;
   virtual void power_on(std::size_t slot) = 0;
 

@@ -30,6 +30,7 @@ class SimulatedNode final : public Actor {
   [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint8_t address() const { return address_; }
+  [[nodiscard]] const NodeModel& model() const { return model_; }
   [[nodiscard]] NodeModel& model() { return model_; }
   [[nodiscard]] LookIndex shown(int channel) const { return powered_ ? model_.shown(channel) : kDark; }
 

@@ -2,6 +2,8 @@
 #include "sim/simulated_rig.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.hpp"
@@ -24,6 +26,8 @@ constexpr std::uint64_t kDeadStream = 1'000'000;
 constexpr std::uint64_t kRebootStream = 1'000'001;
 constexpr std::uint64_t kFaultStream = 0;
 constexpr std::uint64_t kTimingStream = 1;
+
+constexpr std::uint64_t kEndOfFaults = std::numeric_limits<std::uint64_t>::max();
 
 std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surroundings) {
   switch (bus.kind) {
@@ -84,6 +88,10 @@ struct SimulatedRig::State final : Actor {
       : rig(rig_of_show), world(clock), trace(out), supply(rig_of_show.nodes.size()) {}
 
   void act(std::uint64_t token) override {
+    if (token == kEndOfFaults) {
+      end_faults();
+      return;
+    }
     const auto [bus, slot] = places.at(token / 2);
     Instant& back_at = supply[token / 2];
     if (token % 2 == 0) {
@@ -93,6 +101,12 @@ struct SimulatedRig::State final : Actor {
     } else if (world.now() == back_at) {  // not switched off once more meanwhile
       bus->power_on(slot);
     }
+  }
+
+  void end_faults() {
+    if (faults_end != kNever) return;
+    faults_end = world.now();
+    for (auto& bus : buses) bus->end_faults();
   }
 
   SimulatedBus& bus(BusIndex index, std::initializer_list<BusKind> kinds) {
@@ -109,6 +123,7 @@ struct SimulatedRig::State final : Actor {
   std::vector<Place> places;  ///< by node
   std::vector<Reboot> reboots;
   std::vector<NodeIndex> dead;
+  Instant faults_end = kNever;
 };
 
 SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, Instant show_start,
@@ -132,8 +147,11 @@ SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t s
     state.places.push_back({&bus, slot});
   }
   for (auto& bus : state.buses) bus->begin();
-  state.reboots = draw_reboots(state.rig.nodes.size(), state.dead, faults.reboot, show_start, show_length,
-                               rng.split(kRebootStream));
+  const Duration faulty(
+      static_cast<Duration::rep>(std::round(static_cast<double>(show_length.count()) * faults.until)));
+  if (faults.until < 1) state.world.schedule(std::max(clock.now(), show_start + faulty), state, kEndOfFaults);
+  state.reboots =
+      draw_reboots(state.rig.nodes.size(), state.dead, faults.reboot, show_start, faulty, rng.split(kRebootStream));
   for (const Reboot& reboot : state.reboots) {
     FL_CHECK(reboot.at >= clock.now());
     state.world.schedule(reboot.at, state, 2 * std::uint64_t{reboot.node.value()});
@@ -162,6 +180,20 @@ LookIndex SimulatedRig::shown(NodeIndex node, int channel) const {
   const auto [bus, slot] = state_->places.at(node.at());
   FL_CHECK(channel >= 0 && channel < static_cast<int>(state_->rig.nodes[node.at()].channels.size()));
   return bus->node(slot).shown(channel);
+}
+
+void SimulatedRig::end_faults() { state_->end_faults(); }
+
+Instant SimulatedRig::faults_end() const { return state_->faults_end; }
+
+bool SimulatedRig::powered(NodeIndex node) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  return bus->node(slot).powered();
+}
+
+bool SimulatedRig::holds(NodeIndex node) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  return bus->node(slot).model().state() == NodeState::hold;
 }
 
 BusUse SimulatedRig::use(BusIndex bus) const { return state_->buses.at(bus.at())->use(); }

@@ -30,7 +30,7 @@ struct Reboot {
 /// calls.
 class SimulatedRig {
  public:
-  /// @param show_length reboots fall into [show_start, show_start + show_length)
+  /// @param show_length reboots fall into [show_start, show_start + show_length * faults.until)
   /// @param trace one line for each frame, or null; borrowed for the life of the rig
   SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, Instant show_start, Duration show_length,
                ManualClock& clock, std::ostream* trace);
@@ -50,8 +50,16 @@ class SimulatedRig {
   /// controller: advance at most to the earlier of next_event() and the controller's own wish.
   void advance_to(Instant instant);
 
+  /// From now on nothing more goes wrong; what has been drawn already happens. Comes by itself where Faults::until
+  /// says.
+  void end_faults();
+  /// When that was; kNever before.
+  [[nodiscard]] Instant faults_end() const;
   /// What a lamp shows now.
   [[nodiscard]] LookIndex shown(NodeIndex node, int channel) const;
+  [[nodiscard]] bool powered(NodeIndex node) const;
+  /// True while the node keeps what it shows because it has not heard the controller for a second.
+  [[nodiscard]] bool holds(NodeIndex node) const;
   [[nodiscard]] BusUse use(BusIndex bus) const;
   [[nodiscard]] const std::vector<Reboot>& reboots() const;
   [[nodiscard]] const std::vector<NodeIndex>& dead() const;

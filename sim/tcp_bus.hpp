@@ -15,7 +15,7 @@ namespace footlight::sim {
 /// duplicates do not reach the application. Use is counted on a network of 100 Mbit/s.
 class TcpBus final : public SimulatedBus, public drivers::ModbusPort {
  public:
-  static constexpr Duration kReplyTimeout = milliseconds(50);
+  static constexpr Duration kReplyTimeout = milliseconds(30);
 
   TcpBus(const Bus& bus, const Surroundings& surroundings) : SimulatedBus(bus, surroundings) {}
 

@@ -55,6 +55,7 @@ TEST(DryRun, WithoutFaultsEveryMarkerIsRightAndNothingIsSentAgain) {
   EXPECT_EQ(report.late, 0U) << trouble(report);
   EXPECT_EQ(report.retries, 0U) << trouble(report);
   EXPECT_GE(report.right_share, 0.999) << trouble(report);
+  EXPECT_EQ(report.wrong, 0U) << trouble(report);
   EXPECT_EQ(report.wrong_s, 0) << trouble(report);
   for (const BusReport& bus : report.buses) {
     EXPECT_GT(bus.deliveries, 0U) << bus.name;
@@ -68,6 +69,7 @@ TEST(DryRun, EveryMarkerIsRightAtTheEndOfEveryCueThroughLossAndRestarts) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const DryRunReport report = report_of(small, "loss=5%,reboot=2", seed);
     EXPECT_EQ(report.wrong_final, 0U) << "seed " << seed << "\n" << trouble(report);
+    EXPECT_EQ(report.wrong, 0U) << "seed " << seed << "\n" << trouble(report);
     EXPECT_GT(report.retries, 0U);
   }
 }
@@ -78,6 +80,49 @@ TEST(DryRun, RegressionARestartedCanNodeIsStartedAgainWhenItsBootUpMessageIsLost
   small.rig = lamps_everywhere(small.show.stage.grid, kAllKinds, 115'200, 16);
   const DryRunReport report = report_of(small, "loss=5%,reboot=2", 32);
   EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+}
+
+SmallShow show_on(BusKind kind) {
+  SmallShow small = random_show(16, 12, 60, 2, 4, 5);
+  small.rig = lamps_everywhere(small.show.stage.grid, {kind}, 115'200, 16);
+  return small;
+}
+
+// Answers in quarantine were asked for a second apart while every second one was lost.
+TEST(DryRun, RegressionASerialNodeThatIsMisheardOftenIsAskedAgainSoon) {
+  const SmallShow small = show_on(BusKind::serial);
+  const DryRunReport report = report_of(small, "loss=15%,reboot=3", 96);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+}
+
+// The question about a quarantined node came after everything else on a busy line; time-outs took most of the wire.
+TEST(DryRun, RegressionAMisheardModbusNodeIsAskedOnABusyLine) {
+  const SmallShow small = show_on(BusKind::modbus_rtu);
+  const DryRunReport report = report_of(small, "loss=15%,reboot=3", 191);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+}
+
+// Answers after the time-out met the next request on the wire, and nobody understood either.
+TEST(DryRun, RegressionLateSerialAnswersDoNotMeetTheNextRequest) {
+  const SmallShow small = show_on(BusKind::serial);
+  for (const std::uint64_t seed : {198, 199, 200}) {
+    const DryRunReport report = report_of(small, "delay=20ms,duplicate=20%", seed);
+    EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+    EXPECT_EQ(report.late, 0U) << trouble(report);
+  }
+}
+
+TEST(DryRun, EveryMarkerIsRightTwoRefreshPeriodsAfterTheLastFaultOnEveryBus) {
+  for (const BusKind kind : {BusKind::serial, BusKind::modbus_rtu, BusKind::modbus_tcp, BusKind::can}) {
+    const SmallShow small = show_on(kind);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      for (const char* faults : {"loss=30%,reboot=4", "loss=30%,reboot=4,until=50%"}) {
+        const DryRunReport report = report_of(small, faults, seed);
+        EXPECT_EQ(report.wrong_after_recovery, 0U) << faults << " seed " << seed << "\n" << trouble(report);
+        EXPECT_LT(report.right_share, 1) << "faults that change nothing prove nothing";
+      }
+    }
+  }
 }
 
 TEST(DryRun, TheSameSeedGivesTheSameTraceByteForByte) {

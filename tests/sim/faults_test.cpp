@@ -32,7 +32,7 @@ TEST(Faults, TheLargestSharesAreAllowed) {
 TEST(Faults, WrongPartsAreNamedWithWhatWouldBeRight) {
   EXPECT_EQ(message("lost=5%"),
             "faults: \"lost=5%\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, reboot=2, "
-            "dead=1, separated by commas)");
+            "dead=1, until=80%, separated by commas)");
   EXPECT_EQ(message("loss=31%"), "faults: \"loss=31%\" is wrong (a share of 0 to 30%, as loss=5%)");
   EXPECT_EQ(message("corrupt=-1%"), "faults: \"corrupt=-1%\" is wrong (a share of 0 to 30%, as corrupt=1%)");
   EXPECT_EQ(message("duplicate=nan"), "faults: \"duplicate=nan\" is wrong (a share of 0 to 50%, as duplicate=1%)");
@@ -46,7 +46,7 @@ TEST(Faults, WrongPartsAreNamedWithWhatWouldBeRight) {
   EXPECT_EQ(message("loss=1%,loss=2%"), "faults: \"loss=2%\" is wrong (loss is given twice; once is right)");
   EXPECT_EQ(message("loss=1%,,dead=1"),
             "faults: \"\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, reboot=2, dead=1, "
-            "separated by commas)");
+            "until=80%, separated by commas)");
 }
 
 TEST(Chance, SharesComeOutAsAskedFor) {

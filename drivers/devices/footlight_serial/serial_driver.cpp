@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/footlight_serial/serial_driver.hpp"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/check.hpp"
 
@@ -14,13 +16,15 @@ using footlight_serial::frame_length;
 
 constexpr Duration kTurnaround = milliseconds(2);  // longest, of a node
 constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, an adapter's latency, a late node
+constexpr Duration kLongestMargin = milliseconds(40);
+constexpr Duration kForgetLate = milliseconds(5000);
 constexpr std::size_t kLatchBody = 4;
 constexpr int kReadsPerStep = 64;  // a flood must not keep us from sending
 
 }  // namespace
 
 SerialDriver::SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte)
-    : port_(port), plan_byte_(plan_byte) {
+    : port_(port), plan_byte_(plan_byte), margin_(kMargin) {
   for (const NodeAddress& node : nodes) {
     FL_CHECK(node.address >= 1 && node.address <= 254);
     FL_CHECK(boots_.emplace(node.address, std::nullopt).second);
@@ -76,7 +80,10 @@ SendStatus SerialDriver::send(const Frame& frame, std::optional<Awaited> awaited
   if (status != SendStatus::busy) down_ = status == SendStatus::down;
   if (status != SendStatus::accepted) return status;
   line_free_ = now + port_.wire_time(bytes.size());
-  if (awaited) line_free_ += kTurnaround + port_.wire_time(frame_length(answer_bytes)) + kMargin;
+  if (now - last_late_ >= kForgetLate) margin_ = kMargin;
+  if (awaited) line_free_ += kTurnaround + port_.wire_time(frame_length(answer_bytes)) + margin_;
+  // Asked again, its next answer is a good one.
+  if (awaited && given_up_ && given_up_->node.address == awaited->node.address) given_up_.reset();
   awaited_ = awaited;
   line_taken_ = true;
   return status;
@@ -88,13 +95,13 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
   for (; reads < kReadsPerStep; ++reads) {
     const std::size_t count = port_.read(buffer);
     for (std::size_t i = 0; i < count; ++i) {
-      if (const auto frame = receiver_.take(buffer[i])) hear(*frame, events);
+      if (const auto frame = receiver_.take(buffer[i])) hear(*frame, now, events);
     }
     if (count == 0) break;
   }
   if (awaited_ && now >= line_free_) {
     events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
-    awaited_.reset();
+    given_up_ = std::exchange(awaited_, std::nullopt);
   }
   if (down_ != down_told_) {
     down_told_ = down_;
@@ -105,7 +112,18 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
   return line_taken_ ? line_free_ : kNever;
 }
 
-void SerialDriver::hear(const Frame& frame, EventSink& events) {
+void SerialDriver::note_late(const Frame& frame, Instant now) {
+  if (!given_up_ || frame.direction != footlight_serial::Direction::from_node ||
+      frame.address != given_up_->node.address || frame.command != given_up_->command) {
+    return;
+  }
+  given_up_.reset();
+  last_late_ = now;
+  margin_ = std::min(2 * margin_, kLongestMargin);
+}
+
+void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
+  note_late(frame, now);
   if (!awaited_ || frame.address != awaited_->node.address || frame.command != awaited_->command) return;
   if (const auto status = decode_status(frame)) {
     tell_status(awaited_->node, *status, frame.sequence, events);

@@ -15,7 +15,8 @@ namespace footlight::drivers {
 ///
 /// One frame at a time on the line: an operation is busy while an earlier frame is being sent or its answer awaited.
 /// The time-out of an answer is its latest possible end (what is on the wire before it, 2 ms turnaround, its own
-/// length) and a margin for the machine. Answers that do not fit what was asked are not ours and change nothing.
+/// length) and a margin for the machine, which grows while answers come later than that and would collide with the next
+/// request. Answers that do not fit what was asked are not ours and change nothing.
 class SerialDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver
@@ -48,7 +49,8 @@ class SerialDriver final : public Driver {
 
   SendStatus send(const footlight_serial::Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                   Instant now);
-  void hear(const footlight_serial::Frame& frame, EventSink& events);
+  void hear(const footlight_serial::Frame& frame, Instant now, EventSink& events);
+  void note_late(const footlight_serial::Frame& frame, Instant now);
   void tell_status(const NodeAddress& node, const footlight_serial::NodeStatus& status, Sequence shown,
                    EventSink& events);
 
@@ -57,6 +59,9 @@ class SerialDriver final : public Driver {
   std::map<std::uint8_t, std::optional<std::uint16_t>> boots_;  ///< last known, by address
   footlight_serial::FrameReceiver receiver_;
   std::optional<Awaited> awaited_;
+  std::optional<Awaited> given_up_;  ///< the last request whose answer did not come in time
+  Duration margin_;                  ///< beyond the latest possible end of an answer
+  Instant last_late_{};              ///< when an answer has come after it was given up
   Instant line_free_{};      ///< the last byte sent has left by then; with `awaited_`, its answer is given up then
   bool line_taken_ = false;  ///< as of the last call
   bool down_ = false;
