@@ -98,6 +98,10 @@ class PictureSection {
           show_, index_, fmt::format("{} performers, but the stage has {} cells to stand on", people_, room),
           "a larger grid, a smaller pitch or fewer performers"));
     }
+    if (usable == 0) {
+      return input_error(section_message(
+          show_, index_, "no cell is left for the picture beside reserve and blocked cells", "free some cells"));
+    }
     const Box whole{0, 0, double(film_.width), double(film_.height)};
     placement_ = place_picture({&show_.stage, &usable_, picture_options(section_).fit, largest, extent.value_or(whole),
                                 std::min(people_, usable)});

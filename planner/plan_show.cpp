@@ -17,15 +17,27 @@
 namespace footlight::planner {
 namespace {
 
+/// "40 %", and "< 1 %" for what rounding would hide.
+std::string percent(double share) { return share > 0 && share < 0.01 ? "< 1 %" : fmt::format("{:.0f} %", 100 * share); }
+
 Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 
 class ShowPlanner {
  public:
   ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress)
       : show_(show), films_(films), progress_(progress), clearance_m_(show.stage.clearance_m) {
-    for (const Performer& performer : show.performers) {
-      clearance_m_ = std::max(clearance_m_, 2 * performer.radius_m);
+    for (std::size_t p = 0; p < show.performers.size(); ++p) {
+      const auto radius_m = [&](PerformerIndex who) { return show.performers[who.at()].radius_m; };
+      const PerformerIndex who = PerformerIndex::of(p);
+      if (!widest_ || radius_m(who) > radius_m(*widest_)) {
+        second_ = widest_;
+        widest_ = who;
+      } else if (!second_ || radius_m(who) > radius_m(*second_)) {
+        second_ = who;
+      }
     }
+    // Neighbours who stand still are a pitch apart: more cannot be planned for, and the judge has the last word.
+    clearance_m_ = std::max(clearance_m_, std::min(widest_two_m(), show.stage.grid.pitch_m()));
   }
 
   Result<Planned> run() {
@@ -41,11 +53,15 @@ class ShowPlanner {
     write_tracks(*chain);
     write_formations(*chain);
     note_what_gave_way(*chain);
+    note_wide_people();
     if (!write_facts(*chain)) return interrupted();
     progress_.tell("validate", 0);
     const Verdict verdict = validate(planned_.plan);
     planned_.plan.valid = verdict.valid();
     planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
+    if (!planned_.plan.valid && widest_two_m() > show_.stage.grid.pitch_m()) {
+      planned_.refusal.insert(planned_.refusal.begin(), too_wide());
+    }
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       planned_.shortest.push_back(shortest_duration(show_, *chain, SectionIndex::of(s), planned_.plan));
     }
@@ -157,22 +173,61 @@ class ShowPlanner {
     }
   }
 
+  /// No two people need more than this because of their radii.
+  [[nodiscard]] double widest_two_m() const {
+    if (!second_) return 0;
+    return show_.performers[widest_->at()].radius_m + show_.performers[second_->at()].radius_m;
+  }
+  [[nodiscard]] std::string widest_two() const {
+    const Performer& one = show_.performers[widest_->at()];
+    const Performer& two = show_.performers[second_->at()];
+    return fmt::format("performers {} and {} (radius {:g} m and {:g} m)", one.id, two.id, one.radius_m, two.radius_m);
+  }
+  [[nodiscard]] std::string too_wide() const {
+    return section_message(show_, SectionIndex(0),
+                           fmt::format("{} must keep {:g} m, and neighbouring cells are {:g} m apart", widest_two(),
+                                       widest_two_m(), show_.stage.grid.pitch_m()),
+                           fmt::format("smaller radii or a pitch of at least {:g} m", widest_two_m()));
+  }
+  void note_wide_people() {
+    const double bound_m = show_.stage.grid.clearance_bound_m();
+    if (clearance_m_ > show_.stage.clearance_m && clearance_m_ > bound_m) {
+      planned_.plan.sections.front().notes.push_back(fmt::format(
+          "{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: everybody "
+          "is planned that far apart, and many may have to wait",
+          widest_two(), widest_two_m(), bound_m));
+    }
+  }
+
   void note_what_gave_way(const Chain& chain) {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       long given = 0;
       long drawn = 0;
       int formations = 0;
+      int number = 0;
+      int worst = 0;
+      double worst_share = 0;
       for (const Stop& stop : chain.stops) {
-        if (stop.section.at() != s || !stop.station) continue;
+        if (!stop.station || stations_[*stop.station].section.at() != s) continue;
+        const int in_picture = stations_[*stop.station].in_picture;
+        ++number;
         given += stop.given_way;
-        drawn += stations_[*stop.station].in_picture;
-        formations += stop.given_way > 0 ? 1 : 0;
+        drawn += in_picture;
+        if (stop.given_way == 0) continue;
+        ++formations;
+        const double share = double(stop.given_way) / std::max(1, in_picture);
+        if (share > worst_share) {
+          worst_share = share;
+          worst = number;
+        }
       }
       if (given == 0) continue;
       planned_.plan.sections[s].notes.push_back(
-          fmt::format("the drawing gives way: {} of {} places in {} formations are not reached in time, since nobody "
-                      "walks faster than {:g} m/s",
-                      given, drawn, formations, section_speed(show_, show_.sections[s])));
+          fmt::format("the drawing gives way: {} of {} places ({}) in {} formations are not reached in time, most in "
+                      "{}/{} ({}), since "
+                      "nobody walks faster than {:g} m/s",
+                      given, drawn, percent(double(given) / double(drawn)), formations, show_.sections[s].name, worst,
+                      percent(worst_share), section_speed(show_, show_.sections[s])));
     }
   }
 
@@ -205,6 +260,8 @@ class ShowPlanner {
   const std::vector<std::optional<Film>>& films_;
   const Progress& progress_;
   double clearance_m_;
+  std::optional<PerformerIndex> widest_;
+  std::optional<PerformerIndex> second_;
   std::vector<Station> stations_;
   std::vector<std::vector<std::uint32_t>> slot_;
   Planned planned_;

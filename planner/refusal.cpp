@@ -20,6 +20,9 @@ struct FastWalk {
   double limit_mps = 0;
 };
 
+/// Sections that touch are planned a millisecond apart.
+constexpr double kNoTime_s = 0.0015;
+
 /// The section whose limits hold at an instant: the first one that ends after it.
 std::size_t section_of(const Plan& plan, Instant instant) {
   std::size_t s = 0;
@@ -53,12 +56,22 @@ std::string too_fast_text(const Show& show, const Plan& plan, std::size_t sectio
   const double given_s = to_seconds(walk.to.time - walk.from.time);
   const double later = std::ceil((needed_s - given_s) * show.tempo.bpm_at(last) / 60 - 1e-9);
   const double slower = std::floor((last - first) * 60 / needed_s + 1e-9);
-  const std::string what = fmt::format(
-      "performer {} would walk {:.1f} m from {} to {} between count {} and count {} at {:.1f} m/s, {:.1f} times the "
-      "limit of {:g} m/s",
-      plan.performers[walk.performer], walk.walk_m, plan.stage.grid.name(walk.from.cell),
-      plan.stage.grid.name(walk.to.cell), count_text(first), count_text(last), walk.excess * walk.limit_mps,
-      walk.excess, walk.limit_mps);
+  const std::string who =
+      fmt::format("performer {} would walk {:.1f} m from {} to {}", plan.performers[walk.performer], walk.walk_m,
+                  plan.stage.grid.name(walk.from.cell), plan.stage.grid.name(walk.to.cell));
+  if (given_s <= kNoTime_s) {
+    const double start = show.sections[section].start_count;
+    return section_message(
+        show, SectionIndex::of(section),
+        fmt::format("there is no time to walk between the section before and this one: {} at count {}", who,
+                    count_text(first)),
+        fmt::format("start the section at count {} or later, or end the one before {:g} count{} earlier",
+                    count_text(start + later), later, later == 1 ? "" : "s"));
+  }
+  std::string pace = fmt::format("{:.1f} m/s, {:.1f} times the limit", walk.excess * walk.limit_mps, walk.excess);
+  if (walk.excess < 1.05) pace = fmt::format("{:.3g} m/s, above the limit", walk.excess * walk.limit_mps);
+  const std::string what = fmt::format("{} between count {} and count {} at {} of {:g} m/s", who, count_text(first),
+                                       count_text(last), pace, walk.limit_mps);
   const bool held = section > 0 && show.sections[section - 1].hold_counts > 0;
   std::string hint = fmt::format("start the section {:g} count{} later", later, later == 1 ? "" : "s");
   hint += slower >= 1 ? ", " : " or ";

@@ -248,6 +248,96 @@ TEST(PlanShow, MorePeopleThanTheLargestPictureAndTheReserveHoldIsAnInputError) {
             "reserve 10 (at least 89 more reserve cells, a larger floor, fit: area, or fewer performers)");
 }
 
+TEST(PlanShow, NoCellLeftForThePictureIsAnInputError) {
+  Show show = show_with(24, GridKind::square, 24, 20);
+  const char* text =
+      "show.yaml:31:5: error: sections[0]: no cell is left for the picture beside reserve and blocked cells (free some "
+      "cells)";
+  show.sections.push_back(section_of("film", video(), 1, 40, 0, 31));
+  show.stage.reserve = cells_in(show.stage.grid, "A1:X20");
+  const auto all_reserve = plan_show(show, {growing_film()});
+  ASSERT_FALSE(all_reserve);
+  EXPECT_EQ(all_reserve.error().kind, ErrorKind::input);
+  EXPECT_EQ(all_reserve.error().message, text);
+  show.stage.reserve = cells_in(show.stage.grid, "A1:X19");
+  show.stage.blocked = cells_in(show.stage.grid, "A20:X20");
+  show.sections[0].from = ImageSource{"disc.png", {}};
+  const auto blocked = plan_show(show, {tests::film_of(1, [](int) { return tests::disc(60, 60, 30, 30, 20); })});
+  ASSERT_FALSE(blocked);
+  EXPECT_EQ(blocked.error().message, text);
+}
+
+TEST(PlanShow, OneWidePersonKeepsTheOthersNoFartherApartThanHerRadiusAndTheNextAsk) {
+  Show show = growing_show(70);
+  const auto usual = plan_show(show, {growing_film()});
+  show.performers[3].radius_m = 0.4;
+  show.performers[7].radius_m = 0.1;
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_TRUE(usual && planned);
+  expect_sound(*planned, show);
+  // 0.5 m is what the stage asks for: nothing changes.
+  EXPECT_EQ(planned->plan.tracks, usual->plan.tracks);
+  EXPECT_EQ(planned->plan.sections[0].notes, usual->plan.sections[0].notes);
+}
+
+TEST(PlanShow, RadiiThatTheGridCannotKeepAreNamed) {
+  Show show = growing_show(70);
+  show.performers[3].radius_m = 0.4;
+  show.performers[7].radius_m = 0.35;
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_TRUE(planned);
+  EXPECT_THAT(planned->plan.sections[0].notes,
+              testing::Contains("performers 4 and 8 (radius 0.4 m and 0.35 m) must keep 0.75 m, more than the 0.707 m "
+                                "that walks on this grid keep by themselves: everybody is planned that far apart, and "
+                                "many may have to wait"));
+  for (Performer& performer : show.performers) performer.radius_m = 0.6;
+  const auto refused = plan_show(show, {growing_film()});
+  ASSERT_TRUE(refused);
+  EXPECT_FALSE(refused->plan.valid);
+  ASSERT_FALSE(refused->refusal.empty());
+  EXPECT_EQ(refused->refusal.front(),
+            "show.yaml:31:5: error: sections[0]: performers 1 and 2 (radius 0.6 m and 0.6 m) must keep 1.2 m, and "
+            "neighbouring cells are 1 m apart (smaller radii or a pitch of at least 1.2 m)");
+}
+
+TEST(PlanShow, FormationsThatTouchLeaveNoTimeToWalk) {
+  Show show = show_with(1);
+  const auto at = [&](const char* cell) { return CellsSource{"c.csv", cells_in(show.stage.grid, cell), true}; };
+  show.sections.push_back(section_of("one", at("A1:A1"), 1, 0, 8, 31));
+  show.sections.push_back(section_of("two", at("H1:H1"), 9, 0, 8, 35));
+  show.stage.max_speed_mps = 1.4;
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  EXPECT_THAT(planned->refusal,
+              testing::ElementsAre("show.yaml:35:5: error: sections[1]: there is no time to walk between the section "
+                                   "before and this one: performer 1 would walk 7.0 m from A1 to H1 at count 9 (start "
+                                   "the section at count 19 or later, or end the one before 10 counts earlier)"));
+}
+
+TEST(PlanShow, ALittleTooFastIsNotGivenAsARatio) {
+  Show show = show_with(1);
+  const auto at = [&](const char* cell) { return CellsSource{"c.csv", cells_in(show.stage.grid, cell), true}; };
+  show.sections.push_back(section_of("one", at("A1:A1"), 1, 0, 8, 31));
+  show.sections.push_back(section_of("two", at("H1:H1"), 19, 0, 8, 35));
+  show.stage.max_speed_mps = 1.38;
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  ASSERT_EQ(planned->refusal.size(), 1U);
+  EXPECT_THAT(planned->refusal[0], testing::HasSubstr("at 1.4 m/s, above the limit of 1.38 m/s (start"));
+}
+
+TEST(PlanShow, WhatGivesWayIsToldWithItsShareAndTheWorstFormation) {
+  Show show = growing_show(70);
+  show.stage.max_speed_mps = 0.3;
+  const auto planned = plan_show(show, {growing_film()});
+  ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  EXPECT_THAT(planned->plan.sections[0].notes,
+              testing::Contains(testing::MatchesRegex(
+                  "the drawing gives way: [0-9]+ of [0-9]+ places \\([0-9]+ %\\) in [0-9]+ formations are not reached "
+                  "in time, most in growth/[0-9]+ \\([0-9]+ %\\), since nobody walks faster than 0.3 m/s")));
+}
+
 TEST(PlanShow, BlackFilmKeepsEverybodyInTheReserveOrIsAnInputError) {
   Show show = growing_show(30);
   const Film black = tests::film_of(10, [](int) { return Mask(40, 30); });
