@@ -47,25 +47,35 @@ std::vector<std::string> row(const std::string& name, const planner::Measures& m
           fmt::format("{:.0f} m", m.longest_distance_m)};
 }
 
+std::vector<std::string> best_row(const planner::SingleFigures& best) {
+  return {"  best", "-", "-", percent(best.theta_dev), percent(best.theta_miss), percent(best.theta_iou), "-", "-",
+          "-",      "-", "-"};
+}
+
 }  // namespace
 
-std::string measure_text(const Plan& plan, const planner::ShowMeasures& measures) {
+std::string measure_text(const Plan& plan, const planner::ShowMeasures& measures, const SectionBests& bests) {
   TextTable table({"section", "formations", "frames", "theta_dev", "theta_miss", "theta_iou", "clearance", "too close",
                    "speed", "walked", "longest"});
   for (std::size_t i = 0; i < measures.sections.size() && i < plan.sections.size(); ++i) {
     table.add(row(plan.sections[i].name, measures.sections[i]));
+    if (i < bests.size() && bests[i]) table.add(best_row(*bests[i]));
   }
   table.add(row("show", measures.show));
   return table.to_text() + (plan.valid ? "" : "The plan is not valid: it breaks its limits.\n");
 }
 
-std::string measure_json(const Plan& plan, const planner::ShowMeasures& measures) {
+std::string measure_json(const Plan& plan, const planner::ShowMeasures& measures, const SectionBests& bests) {
   Json out{{"title", plan.title}, {"valid", plan.valid}, {"performers", plan.performers.size()}};
   out.update(figures(measures.show));
   out["sections"] = Json::array();
   for (std::size_t i = 0; i < measures.sections.size() && i < plan.sections.size(); ++i) {
     Json section{{"name", plan.sections[i].name}};
     section.update(figures(measures.sections[i]));
+    if (i < bests.size() && bests[i]) {
+      section["best"] = {
+          {"theta_dev", bests[i]->theta_dev}, {"theta_miss", bests[i]->theta_miss}, {"theta_iou", bests[i]->theta_iou}};
+    }
     out["sections"].push_back(std::move(section));
   }
   return out.dump(1) + "\n";

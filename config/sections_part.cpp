@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 
 #include "config/nearest.hpp"
 #include "config/show_parts.hpp"
@@ -76,7 +77,10 @@ Sampling read_sampling(MappingReader sampling) {
 
 PlannerOptions read_planner(MappingReader planner) {
   PlannerOptions out;
-  out.model = planner.choice("model").value_or(0) == 0 ? PlannerModel::hierarchical : PlannerModel::flat;
+  if (const auto model = planner.choice("model")) {
+    constexpr std::array kModels{PlannerModel::hierarchical, PlannerModel::flat, PlannerModel::joint};
+    out.model = kModels.at(static_cast<std::size_t>(*model));
+  }
   out.layers = planner.integer("layers").value_or(out.layers);
   out.cost = planner.choice("cost").value_or(0) == 0 ? PairingCost::squared : PairingCost::euclidean;
   if (auto region = planner.mapping("region")) {

@@ -73,7 +73,7 @@ struct Sampling {
   bool snap_to_count = true;               ///< key frames fall on whole counts
 };
 
-enum class PlannerModel { flat, hierarchical };
+enum class PlannerModel { flat, hierarchical, joint };
 enum class PairingCost { squared, euclidean };
 
 struct PlannerOptions {

@@ -11,13 +11,17 @@
 #include "planner/formation/placement.hpp"
 #include "planner/formation/sampling.hpp"
 #include "planner/formation/summed_area.hpp"
+#include "planner/joint/joint_plan.hpp"
 #include "planner/parallel.hpp"
+#include "planner/schedule/chain.hpp"
 
 namespace footlight::planner {
 namespace {
 
 /// Key frames are so far apart that everybody could walk this many pitches in between.
 constexpr double kShortestInterval = 2.5;
+/// The same where drawing and walks are planned together: as often as the walk can follow.
+constexpr double kJointInterval = 2.0;
 
 const PictureOptions& picture_options(const Section& section) {
   if (const auto* video = std::get_if<VideoSource>(&section.from)) return video->picture;
@@ -38,6 +42,7 @@ class PictureSection {
         section_(show.sections[index.at()]),
         index_(index),
         film_(film),
+        ways_(ways),
         progress_(progress),
         grid_(show.stage.grid),
         people_(static_cast<int>(show.performers.size())) {
@@ -58,10 +63,52 @@ class PictureSection {
     plan.section.notes = notes();
     describe(plan.section);
     fill_stations(plan);
+    if (section_.planner.model == PlannerModel::joint && plan.stations.size() > 1) draw_and_walk(plan);
+    if (progress_.stopped()) return Error{ErrorKind::interrupted, "stopped while drawing formations"};
     return plan;
   }
 
  private:
+  /// Puts the cells of the joint plan in place of the drawings; what is too large for it stays as it is.
+  void draw_and_walk(SectionPlan& plan) const {
+    const JointTask task{&film_,
+                         &ways_,
+                         &usable_,
+                         reserve_,
+                         placement_.map,
+                         fps_,
+                         keys_.front().time,
+                         keys_,
+                         plan.stations.front().cells,
+                         section_speed(show_, section_),
+                         reserve_.empty() ? std::vector<std::vector<CellIndex>>() : guide(plan.stations)};
+    if (progress_.stopped()) return;
+    auto joint = plan_jointly(task, progress_);
+    if (!joint) return;
+    for_each_index(plan.stations.size() - 1, "formations", progress_, [&](std::size_t n) {
+      Station& station = plan.stations[n + 1];
+      station.cells = std::move(joint->at[n + 1]);
+      station.follows = true;
+      const SummedArea picture(film_.frames[static_cast<std::size_t>(keys_[n + 1].frame)]);
+      const auto shares = cell_shares(picture, grid_, placement_.map);
+      station.in_picture =
+          static_cast<int>(std::count_if(station.cells.begin(), station.cells.end(), [&](CellIndex cell) {
+            return usable_[cell.at()] != 0 && shares[cell.at()] > 0;
+          }));
+    });
+  }
+
+  /// The drawings, walked one after the other.
+  [[nodiscard]] std::vector<std::vector<CellIndex>> guide(const std::vector<Station>& stations) const {
+    std::vector<std::vector<CellIndex>> cells;
+    auto chain = walk_through({&show_, &ways_, &stations, show_.stage.clearance_m}, progress_);
+    if (!chain) return cells;
+    for (const Stop& stop : chain->stops) {
+      if (stop.station) cells.push_back(stop.cells);
+    }
+    return cells;
+  }
+
   void choose_keys() {
     const bool video = std::holds_alternative<VideoSource>(section_.from);
     if (!video || film_.frames.size() < 2 || section_.duration_counts <= 0) {
@@ -70,6 +117,11 @@ class PictureSection {
     }
     const FilmTime time{section_.start_count, section_.duration_counts, &show_.tempo};
     fps_ = show_fps(film_, time);
+    if (section_.planner.model == PlannerModel::joint) {
+      keys_ = walking_instants(film_, time, section_.sampling.snap_to_count,
+                               kJointInterval * grid_.pitch_m() / section_speed(show_, section_));
+      return;
+    }
     keys_ =
         sample(film_, time, section_.sampling, kShortestInterval * grid_.pitch_m() / section_speed(show_, section_));
   }
@@ -218,6 +270,7 @@ class PictureSection {
   const Section& section_;
   SectionIndex index_;
   const Film& film_;
+  const Ways& ways_;
   const Progress& progress_;
   const Grid& grid_;
   int people_;

@@ -23,6 +23,7 @@ struct Station {
   std::vector<CellIndex> cells;  ///< distinct, one for each performer; in the order of performers when `pinned`
   bool pinned = false;           ///< who stands where is given
   bool exact = false;            ///< nobody may be elsewhere; else the drawing gives way where walking takes too long
+  bool follows = false;          ///< cells[i] is for who stood on cells[i] of the station before
   int in_picture = 0;            ///< how many of the cells are in the picture
 };
 

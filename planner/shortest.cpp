@@ -32,6 +32,8 @@ std::string who_is_at(const Plan& plan, CellIndex cell, Instant instant) {
 std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain& chain, SectionIndex section,
                                                    const Plan& plan) {
   const Section& asked = show.sections[section.at()];
+  // Planned together with its walks a drawing asks for nothing that takes longer than there is.
+  if (asked.planner.model == PlannerModel::joint) return std::nullopt;
   const Grid& grid = show.stage.grid;
   const double speed = section_speed(show, asked);
   Tightest tightest;

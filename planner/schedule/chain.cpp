@@ -51,7 +51,7 @@ class ChainBuilder {
   /// Who waits in the reserve before and after stays where she is; the others as the section asks for.
   [[nodiscard]] std::vector<std::uint32_t> pair(const Station& from, const Station& to) const {
     std::vector<std::uint32_t> target_of(from.cells.size());
-    if (from.pinned && to.pinned) {
+    if (to.follows || (from.pinned && to.pinned)) {
       for (std::uint32_t i = 0; i < target_of.size(); ++i) target_of[i] = i;
       return target_of;
     }

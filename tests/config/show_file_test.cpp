@@ -77,6 +77,19 @@ TEST_F(ShowFile, FillsWhatIsNotWrittenWithDefaults) {
   EXPECT_EQ(all.files, (std::vector<std::string>{folder_.path("show.yaml").string(), folder_.path("a.csv").string()}));
 }
 
+TEST_F(ShowFile, KnowsEveryPlannerModel) {
+  using enum PlannerModel;
+  for (const auto& [text, model] : {std::pair{"flat", flat}, {"hierarchical", hierarchical}, {"joint", joint}}) {
+    const LoadedShow all =
+        loaded(std::string(kHead) +
+               "sections:\n  - {name: s, from: {video: film.mp4}, start: count 1, duration: 8 counts, "
+               "planner: {model: " +
+               text + "}}\n");
+    ASSERT_EQ(all.show.sections.size(), 1U);
+    EXPECT_EQ(all.show.sections[0].planner.model, model) << text;
+  }
+}
+
 TEST_F(ShowFile, TakesEveryKey) {
   folder_.write("rig.yaml", "rig: 1\nbuses: [{name: c, url: \"sim://can\"}]\nfloor: {buses: [c]}\n");
   const LoadedShow all = loaded(R"(# yaml-language-server: $schema=../docs/schema/show.schema.json

@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 
 #include "core/rng.hpp"
+#include "planner/measure.hpp"
 #include "planner/schedule/ways.hpp"
 #include "planner/validate.hpp"
 #include "tests/support/films.hpp"
@@ -101,6 +102,48 @@ TEST(PlanShow, IsTheSameForAnyNumberOfThreads) {
   }
   EXPECT_EQ(plans[0], plans[1]);
   EXPECT_EQ(plans[0], plans[2]);
+}
+
+TEST(PlanShow, PlansDrawingAndWalksTogetherOnEveryGrid) {
+  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
+    Show show = growing_show(70, kind);
+    show.sections[0].planner.model = PlannerModel::joint;
+    show.stage.blocked = cells_in(show.stage.grid, "N6:O8");
+    const auto planned = plan_show(show, {growing_film()});
+    ASSERT_TRUE(planned) << planned.error().message;
+    expect_sound(*planned, show);
+    EXPECT_GT(planned->plan.formations.back().in_picture, 60);
+  }
+}
+
+TEST(PlanShow, DrawsBetterAndWalksLessWhenItPlansBothTogether) {
+  Show show = show_with(60);
+  show.sections.push_back(section_of("wander", video(), 1, 60, 0, 31));
+  const Film film = tests::film_of(40, [](int f) { return tests::disc(80, 60, 20 + f, 30, 14); });
+  std::vector<Measures> measured;
+  for (const PlannerModel model : {PlannerModel::flat, PlannerModel::hierarchical, PlannerModel::joint}) {
+    show.sections[0].planner.model = model;
+    const auto planned = plan_show(show, {film});
+    ASSERT_TRUE(planned) << planned.error().message;
+    expect_sound(*planned, show);
+    measured.push_back(measure(planned->plan, {film}).show);
+  }
+  for (const std::size_t other : {0U, 1U}) {
+    EXPECT_LT(*measured[2].theta_iou, *measured[other].theta_iou);
+    EXPECT_LT(*measured[2].theta_dev, *measured[other].theta_dev);
+  }
+  EXPECT_LE(measured[2].total_distance_m, 1.5 * measured[0].total_distance_m);
+}
+
+TEST(PlanShow, TheJointPlanIsTheSameForAnyNumberOfThreads) {
+  Show show = growing_show(70);
+  show.sections[0].planner.model = PlannerModel::joint;
+  std::vector<Plan> plans;
+  for (const std::size_t threads : {1U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    plans.push_back(plan_show(show, {growing_film()})->plan);
+  }
+  EXPECT_EQ(plans[0], plans[1]);
 }
 
 TEST(PlanShow, KeepsOffBlockedCellsAndGoesAroundThem) {
