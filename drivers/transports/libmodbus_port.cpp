@@ -19,9 +19,9 @@ namespace {
 
 constexpr Duration kConnectTimeout = milliseconds(500);
 constexpr Duration kTurnaround = milliseconds(5);
-constexpr Duration kRtuMargin = milliseconds(30);  // adapters hold bytes back for up to 16 ms, the machine for more
-constexpr Duration kTcpMargin = milliseconds(30);  // a lost segment takes 200 ms: others are asked meanwhile
-constexpr Duration kTcpTrip = microseconds(500);   // of one request through a local network
+constexpr Duration kRtuMargin = milliseconds(50);  // adapters hold bytes back for up to 16 ms, the machine for more
+constexpr Duration kTcpMargin = milliseconds(100);
+constexpr Duration kTcpTrip = microseconds(500);  // of one request through a local network
 constexpr Duration kByteTimeout = milliseconds(20);
 constexpr int kQuietMs = 20;  // a line that is silent for so long has nothing more to say
 constexpr int kMostQuietRounds = 10;
