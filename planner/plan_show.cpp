@@ -2,6 +2,7 @@
 #include "planner/plan_show.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 class ShowPlanner {
  public:
   ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress)
-      : show_(show), films_(films), progress_(progress), clearance_m_(show.stage.clearance_m) {
+      : show_(show), films_(films), progress_(progress), limits_(show), clearance_m_(show.stage.clearance_m) {
     for (std::size_t p = 0; p < show.performers.size(); ++p) {
       const auto radius_m = [&](PerformerIndex who) { return show.performers[who.at()].radius_m; };
       const PerformerIndex who = PerformerIndex::of(p);
@@ -45,15 +46,32 @@ class ShowPlanner {
     if (show_.performers.empty()) return input_error(show_.file + ": error: performers: the show has nobody in it");
     if (show_.sections.empty()) return input_error(show_.file + ": error: sections: the show has no section");
     const Ways ways(show_.stage, show_.stage.clearance_m / 2);
-    if (auto error = collect_stations(ways)) return *error;
-    auto chain = walk_through({&show_, &ways, &stations_, clearance_m_}, progress_);
-    if (!chain) return interrupted();
+    const bool slow = std::any_of(show_.performers.begin(), show_.performers.end(),
+                                  [](const Performer& performer) { return performer.max_speed_mps > 0; });
+    if (slow) {
+      for (Performer& performer : limits_.performers) performer.max_speed_mps = 0;
+    }
+    std::optional<Chain> chain;
+    for (;;) {
+      if (auto error = collect_stations(ways)) return *error;
+      chain = walk_through({&limits_, &ways, &stations_, clearance_m_}, progress_);
+      if (!chain) return interrupted();
+      name_people(*chain);
+      if (!slow || give_slow_people_slow_tracks(*chain) || slow_for_all_) break;
+      slow_for_all_ = true;
+      limits_ = show_;  // the slowest person's limit for everybody
+      stations_.clear();
+      planned_ = {};
+    }
     describe();
-    name_people(*chain);
     write_tracks(*chain);
     write_formations(*chain);
     note_what_gave_way(*chain);
     note_wide_people();
+    if (slow_for_all_) {
+      planned_.plan.sections.front().notes.push_back(
+          "everybody walks as slowly as the slowest: no tracks are slow enough for those with limits of their own");
+    }
     if (!write_facts(*chain)) return interrupted();
     progress_.tell("validate", 0);
     const Verdict verdict = validate(planned_.plan);
@@ -63,7 +81,7 @@ class ShowPlanner {
       planned_.refusal.insert(planned_.refusal.begin(), too_wide());
     }
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      planned_.shortest.push_back(shortest_duration(show_, *chain, SectionIndex::of(s), planned_.plan));
+      planned_.shortest.push_back(shortest_duration(limits_, *chain, SectionIndex::of(s), planned_.plan));
     }
     progress_.tell("validate", 1);
     return std::move(planned_);
@@ -72,7 +90,7 @@ class ShowPlanner {
  private:
   std::optional<Error> collect_stations(const Ways& ways) {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      auto section = plan_section(show_, SectionIndex::of(s), films_[s], ways, progress_);
+      auto section = plan_section(limits_, SectionIndex::of(s), films_[s], ways, progress_);
       if (!section) return section.error();
       for (Station& station : section->stations) {
         if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
@@ -127,6 +145,45 @@ class ShowPlanner {
       slot_[k] = wanted;
       named = true;
     }
+  }
+
+  /// The slower somebody is, the slower the track she gets, unless a list says who stands where. The limits are nested,
+  /// so that this order fits whenever any does.  @return false when somebody would have to walk too fast
+  bool give_slow_people_slow_tracks(const Chain& chain) {
+    const std::size_t people = show_.performers.size();
+    std::vector<double> fastest_mps(people, 0.0);
+    for (std::size_t k = 0; k < chain.legs.size(); ++k) {
+      const double walked_s = to_seconds(chain.stops[k + 1].arrive - chain.stops[k].depart);
+      for (std::size_t p = 0; p < people; ++p) {
+        const Grid& grid = show_.stage.grid;
+        const double walk_m = distance(grid.centre(cell_of(chain, k, p)), grid.centre(cell_of(chain, k + 1, p)));
+        fastest_mps[p] = std::max(fastest_mps[p], walk_m / walked_s);
+      }
+    }
+    std::vector<std::size_t> track_of(people);
+    std::iota(track_of.begin(), track_of.end(), std::size_t{0});
+    const bool named =
+        std::any_of(stations_.begin(), stations_.end(), [](const Station& station) { return station.pinned; });
+    const auto limit = [&](std::size_t p) {
+      const double own = show_.performers[p].max_speed_mps;
+      return own > 0 ? own : std::numeric_limits<double>::infinity();
+    };
+    if (!named) {
+      std::vector<std::size_t> order = track_of;
+      std::vector<std::size_t> tracks = track_of;
+      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return limit(a) < limit(b); });
+      std::stable_sort(tracks.begin(), tracks.end(),
+                       [&](std::size_t a, std::size_t b) { return fastest_mps[a] < fastest_mps[b]; });
+      for (std::size_t n = 0; n < people; ++n) track_of[order[n]] = tracks[n];
+    }
+    for (std::size_t p = 0; p < people; ++p) {
+      if (fastest_mps[track_of[p]] > limit(p)) return false;
+    }
+    for (auto& slots : slot_) {
+      const std::vector<std::uint32_t> before = slots;
+      for (std::size_t p = 0; p < people; ++p) slots[p] = before[track_of[p]];
+    }
+    return true;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> slots_by_name(const Stop& stop, const Station& station) const {
@@ -227,7 +284,7 @@ class ShowPlanner {
                       "{}/{} ({}), since "
                       "nobody walks faster than {:g} m/s",
                       given, drawn, percent(double(given) / double(drawn)), formations, show_.sections[s].name, worst,
-                      percent(worst_share), section_speed(show_, show_.sections[s])));
+                      percent(worst_share), section_speed(limits_, show_.sections[s])));
     }
   }
 
@@ -259,6 +316,8 @@ class ShowPlanner {
   const Show& show_;
   const std::vector<std::optional<Film>>& films_;
   const Progress& progress_;
+  Show limits_;  ///< with the limits of speed that the walks are planned for
+  bool slow_for_all_ = false;
   double clearance_m_;
   std::optional<PerformerIndex> widest_;
   std::optional<PerformerIndex> second_;

@@ -343,6 +343,27 @@ TEST(PlanShow, RadiiThatTheGridCannotKeepAreNamed) {
             "neighbouring cells are 1 m apart (smaller radii or a pitch of at least 1.2 m)");
 }
 
+TEST(PlanShow, OneSlowPersonGetsASlowTrackAndTheOthersWalkAsUsual) {
+  Show show = show_with(3);
+  const auto at = [&](const char* cells) { return CellsSource{"c.csv", cells_in(show.stage.grid, cells), false}; };
+  show.sections.push_back(section_of("one", at("A1:A3"), 1, 0, 4, 31));
+  CellsSource two = at("A1:A1");
+  for (const CellIndex cell : cells_in(show.stage.grid, "F2:F3")) two.cells.push_back(cell);
+  show.sections.push_back(section_of("two", two, 13, 0, 4, 35));
+  show.stage.max_speed_mps = 1.4;
+  show.performers[2].max_speed_mps = 0.2;
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  EXPECT_EQ(planned->plan.tracks[2].back().cell, show.stage.grid.index({0, 0}));
+  EXPECT_TRUE(planned->plan.sections[0].notes.empty());
+  for (Performer& performer : show.performers) performer.max_speed_mps = 0.2;
+  const auto slow = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(slow);
+  EXPECT_FALSE(slow->plan.valid);
+  EXPECT_THAT(slow->plan.sections[0].notes, testing::ElementsAre(testing::HasSubstr("as slowly as the slowest")));
+}
+
 TEST(PlanShow, FormationsThatTouchLeaveNoTimeToWalk) {
   Show show = show_with(1);
   const auto at = [&](const char* cell) { return CellsSource{"c.csv", cells_in(show.stage.grid, cell), true}; };
