@@ -7,7 +7,7 @@
 namespace footlight {
 
 void check_failed(const char* expression, const char* file, int line) noexcept {
-  std::fprintf(stderr, "%s:%d: internal error: expected %s\n", file, line, expression);
+  (void)std::fprintf(stderr, "%s:%d: internal error: expected %s\n", file, line, expression);
   std::abort();
 }
 

@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 5> kEffectNames{"steady", "blink", "pulse
 
 std::string to_text(Colour colour) {
   char text[8];
-  std::snprintf(text, sizeof text, "#%02X%02X%02X", colour.red, colour.green, colour.blue);
+  (void)std::snprintf(text, sizeof text, "#%02X%02X%02X", colour.red, colour.green, colour.blue);
   return text;
 }
 

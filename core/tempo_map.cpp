@@ -67,7 +67,7 @@ std::string TempoMap::measure_beat(double count) const {
   const double measure = std::floor(beats / beats_per_measure_);
   const double beat = beats - measure * beats_per_measure_ + 1;
   char text[64];
-  std::snprintf(text, sizeof text, "%.0f:%.6g", measure + 1, beat);
+  (void)std::snprintf(text, sizeof text, "%.0f:%.6g", measure + 1, beat);
   return text;
 }
 

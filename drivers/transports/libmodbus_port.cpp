@@ -144,7 +144,7 @@ int LibmodbusPort::exchange(const ModbusRequest& request, std::vector<std::uint1
       FL_CHECK(request.values.size() == request.count);
       return modbus_write_registers(context_.get(), request.first_register, request.count, request.values.data());
     default:
-      FL_CHECK(!"a function that the drivers use");
+      FL_CHECK(false && "a function that the drivers use");
       return -1;
   }
 }

@@ -29,7 +29,7 @@ std::size_t rtu_reply_bytes(const ModbusRequest& request) {
 
 Duration rtu_silence(int bits_per_second) {
   if (bits_per_second > 19'200) return microseconds(1750);
-  return bits_time(kBitsPerCharacter * 7, 2 * bits_per_second);
+  return bits_time(Duration::rep{kBitsPerCharacter} * 7, 2 * bits_per_second);
 }
 
 Duration rtu_wire_time(const ModbusRequest& request, int bits_per_second) {

@@ -129,7 +129,7 @@ std::vector<std::uint8_t> ModbusMarker::read(std::span<const std::uint8_t> reque
       dropped_};
   std::vector<std::uint8_t> reply{kRead, static_cast<std::uint8_t>(2 * count)};
   const int offset = first - *profile_.status_register;
-  for (int i = 0; i < count; ++i) append(reply, status[static_cast<std::size_t>(offset + i)]);
+  for (int i = 0; i < count; ++i) append(reply, status[static_cast<std::size_t>(offset) + static_cast<std::size_t>(i)]);
   return reply;
 }
 
