@@ -73,6 +73,7 @@ SendStatus ModbusDriver::latch(Sequence sequence, Instant now) {
                now);
   }
   std::vector<Job> writes;
+  writes.reserve(kept_.size());
   for (const auto& [node, kept] : kept_) {
     writes.push_back({Purpose::late_write, node, sequence,
                       modbus::preload(profile_, kept.node.address, plan_byte_, sequence, kept.looks)});
