@@ -98,6 +98,7 @@ int run(Session& session, const Options& options) {
   if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
   std::optional<TraceFile> trace;
   if (!options.trace.empty()) {
+    if (auto spared = spare_inputs(planned->loaded, options.trace); !spared) return session.fail(spared.error());
     trace.emplace(options.trace);
     if (auto opened = trace->open(); !opened) return session.fail(opened.error());
   }

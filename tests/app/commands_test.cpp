@@ -266,6 +266,9 @@ TEST_F(StarterShow, AnOutputNeverOverwritesWhatTheShowReads) {
   const Ran ran = footlight({"plan", show_, "-q", "-o", show_});
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.err, "error: '" + show_ + "' is a file that the show reads (give the output another name)\n");
+  const Ran traced = footlight({"dryrun", show_, "-q", "--trace", show_});
+  EXPECT_EQ(traced.status, 2);
+  EXPECT_EQ(traced.err, ran.err);
   EXPECT_EQ(folder_.read("s/show.yaml"), before);
 }
 
