@@ -115,7 +115,6 @@ class BusLoop final : private drivers::EventSink {
   bool refresh() noexcept;
 
   bool send_preload(NodeState& node, std::size_t k) noexcept;
-  bool send_latch(std::size_t k) noexcept;
   bool send_ask(NodeState& node) noexcept;
   bool took(drivers::SendStatus status, Operation operation, Duration time) noexcept;
 

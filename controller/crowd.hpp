@@ -45,7 +45,6 @@ class Crowd {
 
   /// Ascending by time; a settled one before the other of the same instant. The first is the opening.
   [[nodiscard]] const std::vector<Moment>& moments() const { return moments_; }
-  [[nodiscard]] const std::vector<Announcement>& announcements() const { return announcements_; }
 
   /// One for each performer. Cheapest when called with ascending k: O(performers), amortised.
   void look_at(std::size_t k, std::vector<Doing>& doing);
