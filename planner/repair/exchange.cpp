@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "core/check.hpp"
 #include "planner/repair/closest_approach.hpp"
 
 namespace footlight::planner {
 
 Exchanged exchange(std::span<const Point> sources, std::span<const Point> targets,
-                   std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk) {
+                   std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk,
+                   std::span<const std::uint32_t> kind) {
+  FL_CHECK(kind.empty() || kind.size() == sources.size());
   Exchanged done;
   std::vector<Walk> walks(sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) walks[i] = {sources[i], targets[target_of[i]]};
@@ -19,6 +22,7 @@ Exchanged exchange(std::span<const Point> sources, std::span<const Point> target
     const auto pairs = near_pairs(walks, reach_m, changed);
     std::fill(changed.begin(), changed.end(), char{0});
     for (const NearPair& pair : pairs) {
+      if (!kind.empty() && kind[pair.a] != kind[pair.b]) continue;
       Walk& a = walks[pair.a];
       Walk& b = walks[pair.b];
       const double product = dot(a.from - b.from, a.to - b.to);

@@ -21,9 +21,12 @@ struct Exchanged {
 /// Exchanges the targets of two people whose walks conflict (Li 2020 section III D, figure 6): who come nearer than
 /// `reach_m` with (s_i - s_j) . (g_i - g_j) < 0. Each exchange lowers the sum of the squared distances by
 /// -2 (s_i - s_j) . (g_i - g_j), so it ends; a pair with a product >= 0 keeps the grid's bound by itself (Turpin,
-/// Michael, Kumar 2014). An exchange that would make a walk that may not be walked is not made.
-/// @param target_of in and out: a bijection  @return what was done. O(rounds x near pairs)
+/// Michael, Kumar 2014). An exchange that would make a walk that may not be walked is not made, nor one between people
+/// of two kinds.
+/// @param target_of in and out: a bijection  @param kind of each source's person; empty: everybody is of one kind
+/// @return what was done. O(rounds x near pairs)
 Exchanged exchange(std::span<const Point> sources, std::span<const Point> targets,
-                   std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk);
+                   std::vector<std::uint32_t>& target_of, double reach_m, const MayWalk& may_walk,
+                   std::span<const std::uint32_t> kind = {});
 
 }  // namespace footlight::planner

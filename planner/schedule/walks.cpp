@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/check.hpp"
 #include "planner/assignment/assignment.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/repair/exchange.hpp"
@@ -27,6 +28,7 @@ class Settler {
   explicit Settler(const LegTask& task) : task_(task), grid_(task.ways->grid()) {
     for (const CellIndex cell : task.from) sources_.push_back(grid_.centre(cell));
     for (const CellIndex cell : task.to) targets_.push_back(grid_.centre(cell));
+    FL_CHECK(sources_.size() == targets_.size() && (task.kind.empty() || task.kind.size() == sources_.size()));
     reach_m_ = std::max(task.clearance_m, grid_.clearance_bound_m());
   }
 
@@ -34,9 +36,7 @@ class Settler {
     Leg leg;
     leg.target_of.resize(sources_.size());
     std::iota(leg.target_of.begin(), leg.target_of.end(), 0U);
-    if (!walkable(leg.target_of)) {
-      if (auto exact = match_walkable()) leg.target_of = std::move(*exact);
-    }
+    match_walkable(leg.target_of);
     leg.walkable = walkable(leg.target_of);
     leg.exchanges = swap_conflicts(leg.target_of);
     auto close = close_pairs(leg.target_of);
@@ -61,27 +61,54 @@ class Settler {
     return true;
   }
   int swap_conflicts(std::vector<std::uint32_t>& target_of) const {
-    return exchange(sources_, targets_, target_of, reach_m_, [&](Point a, Point b) { return may_walk(a, b); })
+    return exchange(
+               sources_, targets_, target_of, reach_m_, [&](Point a, Point b) { return may_walk(a, b); }, task_.kind)
         .exchanges;
   }
 
-  /// The exact pairing under the limits; nothing when there is none (or the stage is blocked and too large to try).
-  [[nodiscard]] std::optional<std::vector<std::uint32_t>> match_walkable() const {
+  [[nodiscard]] bool same_kind(std::uint32_t i, std::uint32_t j) const {
+    return task_.kind.empty() || task_.kind[i] == task_.kind[j];
+  }
+
+  /// Puts the exact pairing under the limits in place of those kinds' in which somebody cannot walk to the target,
+  /// where there is one (and the stage is open, or small enough to try). `target_of` is each person's own.
+  void match_walkable(std::vector<std::uint32_t>& target_of) const {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> unwalkable;
+    for (std::uint32_t i = 0; i < sources_.size(); ++i) {
+      if (!may_walk(sources_[i], targets_[i])) unwalkable[task_.kind.empty() ? 0 : task_.kind[i]];
+    }
+    if (unwalkable.empty()) return;
+    for (std::uint32_t i = 0; i < sources_.size(); ++i) {
+      const auto found = unwalkable.find(task_.kind.empty() ? 0 : task_.kind[i]);
+      if (found != unwalkable.end()) found->second.push_back(i);
+    }
+    for (const auto& [kind, people] : unwalkable) {
+      const auto best = match_within(people);
+      for (std::size_t n = 0; best && n < people.size(); ++n) target_of[people[n]] = people[best->target_of[n]];
+    }
+  }
+
+  /// The exact pairing of some people with their own targets; nothing when there is none.
+  [[nodiscard]] std::optional<Assignment> match_within(const std::vector<std::uint32_t>& people) const {
     if (task_.ways->open()) {
-      auto best = assign(sources_, targets_, WalkCost::squared, task_.longest_m);
-      if (!best) return std::nullopt;
-      return std::move(best->target_of);
+      std::vector<Point> starts;
+      std::vector<Point> goals;
+      for (const std::uint32_t i : people) {
+        starts.push_back(sources_[i]);
+        goals.push_back(targets_[i]);
+      }
+      return assign(starts, goals, WalkCost::squared, task_.longest_m);
     }
     std::vector<Arc> arcs;
-    for (std::uint32_t i = 0; i < sources_.size(); ++i) {
-      for (std::uint32_t j = 0; j < targets_.size(); ++j) {
-        if (may_walk(sources_[i], targets_[j])) arcs.push_back({i, j, squared_length(sources_[i] - targets_[j])});
+    for (std::uint32_t n = 0; n < people.size(); ++n) {
+      const Point from = sources_[people[n]];
+      for (std::uint32_t m = 0; m < people.size(); ++m) {
+        const Point to = targets_[people[m]];
+        if (may_walk(from, to)) arcs.push_back({n, m, squared_length(from - to)});
       }
       if (arcs.size() > kMostArcs) return std::nullopt;
     }
-    auto best = assign_sparse(static_cast<std::uint32_t>(sources_.size()), arcs);
-    if (!best) return std::nullopt;
-    return std::move(best->target_of);
+    return assign_sparse(static_cast<std::uint32_t>(people.size()), arcs);
   }
 
   /// People whose walks pass near a conflict, ascending: they may be matched again among themselves.
@@ -121,7 +148,7 @@ class Settler {
         const std::uint32_t m = at_cell[cell.at()];
         if (m == kNone) continue;
         const std::uint32_t j = target_of[people[m]];
-        if (m != n && !may_walk(sources_[i], targets_[j])) continue;
+        if (m != n && (!same_kind(i, j) || !may_walk(sources_[i], targets_[j]))) continue;
         const auto penalty = penalties.find({i, j});
         const double toll = penalty == penalties.end() ? 0 : penalty->second;
         arcs.push_back({n, m, squared_length(sources_[i] - targets_[j]) + toll});

@@ -79,5 +79,14 @@ TEST(Exchange, NeverMakesAWalkThatMayNotBeWalked) {
   EXPECT_EQ(crowd.target_of, (std::vector<std::uint32_t>{0, 1}));
 }
 
+TEST(Exchange, PeopleOfTwoKindsKeepTheirTargets) {
+  Crowd crowd{{{0, 0}, {4, 0}}, {{4, 0}, {0, 0}}, {0, 1}};
+  const std::vector<std::uint32_t> two{7, 3};
+  EXPECT_EQ(exchange(crowd.sources, crowd.targets, crowd.target_of, 0.7, anybody, two).exchanges, 0);
+  EXPECT_EQ(crowd.target_of, (std::vector<std::uint32_t>{0, 1}));
+  const std::vector<std::uint32_t> one{7, 7};
+  EXPECT_EQ(exchange(crowd.sources, crowd.targets, crowd.target_of, 0.7, anybody, one).exchanges, 1);
+}
+
 }  // namespace
 }  // namespace footlight::planner

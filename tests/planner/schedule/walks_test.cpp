@@ -57,6 +57,62 @@ TEST(Settle, SaysWhoIsTooCloseWhereNothingHelps) {
   EXPECT_EQ(leg.conflicts.front(), std::pair(0U, 1U));
 }
 
+TEST(Settle, OnlyPeopleOfOneKindExchangeTheirTargets) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> from{CellIndex(0), CellIndex(5), CellIndex(10), CellIndex(15)};
+  const std::vector<CellIndex> to{CellIndex(6), CellIndex(1), CellIndex(16), CellIndex(11)};
+  const std::vector<std::uint32_t> kind{1, 2, 3, 3};
+  const Leg leg = settle({&ways, from, to, 9, 0.5, kind});
+  EXPECT_EQ(leg.target_of, (std::vector<std::uint32_t>{0, 1, 3, 2}));
+  EXPECT_EQ(leg.conflicts, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}}));
+}
+
+TEST(Settle, TargetsTooFarAreHandedOutAnewWithinTheirKind) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> from{CellIndex(0), CellIndex(3), CellIndex(6), CellIndex(10)};
+  const std::vector<CellIndex> to{CellIndex(9), CellIndex(3), CellIndex(6), CellIndex(12)};
+  const std::vector<std::uint32_t> one{0, 0, 0, 1};
+  const Leg leg = settle({&ways, from, to, 3.5, 0.5, one});
+  EXPECT_TRUE(leg.walkable);
+  EXPECT_EQ(leg.target_of, (std::vector<std::uint32_t>{1, 2, 0, 3}));
+  const std::vector<std::uint32_t> alone{0, 1, 1, 2};
+  EXPECT_FALSE(settle({&ways, from, to, 3.5, 0.5, alone}).walkable) << "the one who walks too far cannot be relieved";
+}
+
+TEST(Settle, NobodyEverTakesATargetOfAnotherKind) {
+  EXPECT_TRUE(rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    Stage stage;
+    stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 10, 9, 1.0);
+    if (rng.below(2) == 0) stage.blocked = {CellIndex(44)};
+    const Ways ways(stage, 0.25);
+    const std::size_t people = 1 + rng.below(60);
+    const auto some = [&] {
+      std::vector<CellIndex> cells;
+      for (int i = 0; i < stage.grid.size(); ++i) {
+        if (ways.can_stand(CellIndex::of(i))) cells.push_back(CellIndex::of(i));
+      }
+      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
+      cells.resize(people);
+      return cells;
+    };
+    const auto from = some();
+    const auto to = some();
+    std::vector<std::uint32_t> kind(people);
+    const std::uint64_t kinds = 1 + rng.below(people);
+    for (std::uint32_t& one : kind) one = static_cast<std::uint32_t>(rng.below(kinds));
+    const Leg leg = settle({&ways, from, to, 2.0 + 8 * rng.uniform(), 0.5, kind});
+    std::vector<std::uint32_t> order = leg.target_of;
+    for (std::uint32_t i = 0; i < people; ++i) RC_ASSERT(kind[leg.target_of[i]] == kind[i]);
+    std::sort(order.begin(), order.end());
+    for (std::uint32_t i = 0; i < people; ++i) RC_ASSERT(order[i] == i);
+  }));
+}
+
 TEST(Settle, WithoutALimitNobodyEverComesNearerThanTheBound) {
   EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
