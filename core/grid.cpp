@@ -21,7 +21,7 @@ double column_step(GridKind kind) { return kind == GridKind::triangular ? kSqrt3
 
 }  // namespace
 
-double length(Point a) { return std::hypot(a.x, a.y); }
+double length(Point a) { return std::sqrt(squared_length(a)); }
 
 std::string_view to_text(GridKind kind) {
   switch (kind) {

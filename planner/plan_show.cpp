@@ -304,7 +304,7 @@ class ShowPlanner {
           facts.longest_walker = PerformerIndex::of(p);
         }
       }
-      const NearPair nearest = nearest_pair(walks, show_.stage.grid.pitch_m());
+      const NearPair nearest = nearest_pair(walks);
       facts.clearance_m = nearest.approach.distance_m;
       facts.closest_a = PerformerIndex(nearest.a);
       facts.closest_b = PerformerIndex(nearest.b);

@@ -31,14 +31,12 @@ struct NearPair {
   Approach approach;
 };
 
-/// Every pair whose walks come nearer than `reach_m`, ascending (a, b). The time is cut into slices in which nobody
-/// walks more than the reach, and each slice looks into neighbouring buckets only. O(slices x people in a
-/// neighbourhood)
+/// Every pair whose walks come nearer than `reach_m`, ascending (a, b). O(n log n + pairs that come near)
 /// @param among one flag a person: only pairs with at least one flagged person are looked for; empty: all pairs
 [[nodiscard]] std::vector<NearPair> near_pairs(std::span<const Walk> walks, double reach_m,
                                                std::span<const char> among = {});
 
-/// The nearest two of all; nothing comes nearer than `distance_m`. Infinity and 0, 0 for one person.
-[[nodiscard]] NearPair nearest_pair(std::span<const Walk> walks, double pitch_m);
+/// The nearest two of all, the first (a, b) among equals. Infinity and 0, 0 for one person.
+[[nodiscard]] NearPair nearest_pair(std::span<const Walk> walks);
 
 }  // namespace footlight::planner

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/check.hpp"
-#include "planner/repair/closest_approach.hpp"
+#include "planner/repair/walk_tree.hpp"
 
 namespace footlight::planner {
 
@@ -17,9 +17,12 @@ Exchanged exchange(std::span<const Point> sources, std::span<const Point> target
   for (std::size_t i = 0; i < sources.size(); ++i) walks[i] = {sources[i], targets[target_of[i]]};
   // Only who walks elsewhere than in the round before can have new conflicts.
   std::vector<char> changed(sources.size(), 1);
+  std::vector<NearPair> pairs;
+  WalkTree tree;
+  tree.build(walks);
   for (;;) {
     int exchanged = 0;
-    const auto pairs = near_pairs(walks, reach_m, changed);
+    tree.find(reach_m, changed, WalkTree::Pairs::opposed, pairs);
     std::fill(changed.begin(), changed.end(), char{0});
     for (const NearPair& pair : pairs) {
       if (!kind.empty() && kind[pair.a] != kind[pair.b]) continue;
@@ -36,6 +39,7 @@ Exchanged exchange(std::span<const Point> sources, std::span<const Point> target
     }
     done.exchanges += exchanged;
     if (exchanged == 0) return done;
+    tree.move(walks);
   }
 }
 

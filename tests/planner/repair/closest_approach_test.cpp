@@ -73,12 +73,12 @@ TEST(NearPairs, CanBeLimitedToThoseOfSomePeople) {
 
 TEST(NearestPair, FindsTheNearestHoweverFarApart) {
   const std::vector<Walk> walks{{{0, 0}, {0, 0}}, {{30, 0}, {20, 0}}, {{90, 0}, {90, 1}}};
-  const NearPair pair = nearest_pair(walks, 1.0);
+  const NearPair pair = nearest_pair(walks);
   EXPECT_EQ(pair.a, 0U);
   EXPECT_EQ(pair.b, 1U);
   EXPECT_DOUBLE_EQ(pair.approach.distance_m, 20);
   EXPECT_DOUBLE_EQ(pair.approach.share, 1);
-  EXPECT_TRUE(std::isinf(nearest_pair(std::span(walks).first(1), 1.0).approach.distance_m));
+  EXPECT_TRUE(std::isinf(nearest_pair(std::span(walks).first(1)).approach.distance_m));
 }
 
 }  // namespace
