@@ -33,7 +33,7 @@ TEST(CommandLine, TellsItsVersionAndItsCommands) {
   const Ran help = footlight({"--help"});
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
-  for (const std::string command : {"new", "check", "plan", "measure", "export", "dryrun"}) {
+  for (const std::string command : {"new", "check", "plan", "measure", "why", "export", "dryrun"}) {
     EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
     const Ran one = footlight({command, "--help"});
     EXPECT_EQ(one.status, 0);
@@ -103,6 +103,41 @@ TEST_F(StarterShow, AFilmThatCannotBeDecodedIsReportedAtItsSection) {
     EXPECT_EQ(ran.out, "");
   }
   EXPECT_EQ(footlight({"check", "--no-media", show_}).status, 0);
+}
+
+TEST_F(StarterShow, WhyTellsWhatLimitsAMoveByCueFormationCountOrTime) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const std::string by_cue = footlight({"why", show_, "7", "2", "--json"}).out;
+  const json told = json::parse(by_cue);
+  EXPECT_EQ(told["formation"], "ring/1");
+  EXPECT_EQ(told["valid"], true);
+  EXPECT_EQ(told["one_more_count"]["planned"]["places_reached"], 12);
+  EXPECT_EQ(by_cue, footlight({"why", show_, "7", "--formation", "ring/1", "--json"}).out);
+  EXPECT_EQ(by_cue, footlight({"why", show_, "7", "--count", "20", "--json"}).out);
+  EXPECT_EQ(by_cue, footlight({"why", show_, "7", "--time", "11.4", "--json"}).out);
+  EXPECT_THAT(footlight({"why", show_, "7", "2"}).out, HasSubstr("performer 7 into ring/1, count 9 to 25: "));
+}
+
+TEST_F(StarterShow, WhyHelpsWithWrongNames) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const auto wrong = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"why", show_});
+    const Ran ran = footlight(words);
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.out, "");
+    return ran.err;
+  };
+  EXPECT_EQ(wrong({"77", "2"}), "error: there is no performer \"77\" (did you mean \"7\"?)\n");
+  EXPECT_EQ(wrong({"7", "22"}), "error: there is no cue \"22\" (did you mean \"2\"?)\n");
+  EXPECT_EQ(wrong({"7", "--formation", "rong/1"}),
+            "error: there is no formation \"rong/1\" (did you mean \"ring/1\"?)\n");
+  EXPECT_EQ(wrong({"7", "1"}), "error: cue 1 is the opening form: nobody walks into it (ask for a later one)\n");
+  EXPECT_EQ(wrong({"7", "--formation", "line/1"}),
+            "error: formation \"line/1\" is the opening form: nobody walks into it (ask for a later one)\n");
+  EXPECT_EQ(wrong({"7", "--count", "500"}),
+            "error: nobody walks after count 49, at 28.800 s (arrow/1 is the last formation)\n");
+  EXPECT_EQ(wrong({"7"}), "error: say which move: one of CUE, --formation, --count and --time\n");
+  EXPECT_EQ(wrong({"7", "2", "--time", "3"}), "error: say which move: one of CUE, --formation, --count and --time\n");
 }
 
 TEST_F(StarterShow, PlansIntoAFileBesideTheShow) {
