@@ -10,7 +10,7 @@ namespace footlight::config {
 namespace {
 
 std::string_view single_name(Type type) {
-  constexpr std::array<std::string_view, 22> kNames{"whole number",
+  constexpr std::array<std::string_view, 25> kNames{"whole number",
                                                     "number",
                                                     "text",
                                                     "true or false",
@@ -31,6 +31,9 @@ std::string_view single_name(Type type) {
                                                     "performers",
                                                     "0 to 255 or otsu",
                                                     "mapping",
+                                                    "counts or times of the video",
+                                                    "cell -> cell",
+                                                    "performer -> cell",
                                                     "cells or wearable"};
   return kNames.at(static_cast<std::size_t>(type));
 }

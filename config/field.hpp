@@ -32,6 +32,9 @@ enum class Type {
   members,      ///< performer id or range of numbers, "1-300"
   threshold,    ///< otsu or 0..255
   mapping,      ///< Field::listing
+  instant,      ///< "count 17", or a time of a video as "2.4 s"
+  move,         ///< "B4 -> C4": cell, cell
+  pin,          ///< "17 -> C4": performer, cell
   lamp,         ///< cells, or a mapping as Field::listing
 };
 

@@ -130,6 +130,7 @@ class CellsReader {
         cells_(show_.performers.size()),
         line_of_performer_(show_.performers.size()) {
     for (std::size_t p = 0; p < show_.performers.size(); ++p) ids_.emplace(show_.performers[p].id, p);
+    for (std::size_t g = 0; g < show_.groups.size(); ++g) group_names_.push_back(show_.groups[g].name);
   }
 
   /// One row; without a column of performers the next one of them in the list.
@@ -147,6 +148,7 @@ class CellsReader {
     } else if (who >= cells_.size()) {
       return;  // counted; finish() says so
     }
+    if (group_column_ && !read_group(row[*group_column_])) return;
     const CsvField& place = row[cell_column_ ? *cell_column_ : *column_column_];
     line_of_performer_[who] = place.line;
     if (const auto cell = cell_of(row, place)) take(who, *cell, place);
@@ -158,6 +160,12 @@ class CellsReader {
     cell_column_ = table_.column("cell");
     column_column_ = table_.column("col");
     row_column_ = table_.column("row");
+    group_column_ = table_.column("group");
+    if (group_column_ && performer_column_) {
+      error(table_.header[*group_column_], "the columns \"performer\" and \"group\" do not go together",
+            "who stands where by name, or whose places they are");
+      return false;
+    }
     if (cell_column_ ? !column_column_ && !row_column_ : column_column_ && row_column_) return true;
     error(table_.header.front(),
           "the place of a performer is one column \"cell\" or the two columns \"col\" and \"row\"",
@@ -172,11 +180,44 @@ class CellsReader {
       diagnostics_.error({table_.file, 0, 0}, "",
                          std::to_string(next_) + " cells for " + std::to_string(cells_.size()) + " performers",
                          "one row for every performer");
+    } else if (group_column_ && groups_.size() == cells_.size()) {
+      compare_groups();
     }
-    return {table_.file, std::move(cells_), performer_column_.has_value()};
+    return {table_.file, std::move(cells_), performer_column_.has_value(), std::move(groups_)};
   }
 
  private:
+  bool read_group(const CsvField& written) {
+    std::optional<GroupIndex> group;
+    if (!written.text.empty()) {
+      const auto found = std::find(group_names_.begin(), group_names_.end(), written.text);
+      if (found == group_names_.end()) {
+        error(written, "no group has the name " + in_quotes(written.text),
+              group_names_.empty() ? "the show has no groups" : suggestion(written.text, group_names_, "groups"));
+        return false;
+      }
+      group = GroupIndex::of(found - group_names_.begin());
+    }
+    groups_.push_back(group);
+    return true;
+  }
+  /// As many cells of each group as it has people.
+  void compare_groups() {
+    std::map<std::optional<GroupIndex>, int> more;
+    for (const auto& group : groups_) ++more[group];
+    for (const Performer& performer : show_.performers) --more[performer.group];
+    for (const auto& [group, cells] : more) {
+      if (cells == 0) continue;
+      const auto people = std::count_if(show_.performers.begin(), show_.performers.end(),
+                                        [&](const Performer& performer) { return performer.group == group; });
+      const std::string whose = group ? "the group " + in_quotes(group_names_[group->at()]) : "people without a group";
+      diagnostics_.error(
+          {table_.file, 0, 0}, "",
+          std::to_string(people + cells) + " cells for " + std::to_string(people) + " performers of " + whose,
+          "one row for every performer");
+    }
+  }
+
   void error(const CsvField& at, std::string text, std::string hint) {
     diagnostics_.error(table_.at(at), "", std::move(text), std::move(hint));
   }
@@ -253,6 +294,9 @@ class CellsReader {
   std::optional<std::size_t> cell_column_;
   std::optional<std::size_t> column_column_;
   std::optional<std::size_t> row_column_;
+  std::optional<std::size_t> group_column_;
+  std::vector<std::string> group_names_;
+  std::vector<std::optional<GroupIndex>> groups_;
 };
 
 }  // namespace
@@ -276,7 +320,7 @@ void read_roster_csv(ShowReading& show, const std::string& file) {
 }
 
 CellsSource read_cells_csv(ShowReading& show, const std::string& file) {
-  const auto table = load_table(show, file, {"performer", "col", "row", "cell"});
+  const auto table = load_table(show, file, {"performer", "group", "col", "row", "cell"});
   if (!table || !show.has_stage || !show.has_performers) return {file, {}, true};
   CellsReader reader(show, *table);
   if (!reader.find_columns()) return {file, {}, true};

@@ -34,56 +34,44 @@ std::optional<std::pair<int, int>> parse_span(const std::string& text) {
   return std::pair{*first, *last};
 }
 
-/// Puts people into one group, and says who is in two or does not exist.
-class Membership {
- public:
-  Membership(ShowReading& show, MappingReader& group, GroupIndex index, const IdIndex& ids)
-      : show_(show.show()), group_(group), index_(index), ids_(ids) {}
-
-  void add(const Written& written) {
-    if (const auto one = ids_.find(written.text); one != ids_.end()) {
-      (void)join(written, one->second);
-      return;
-    }
-    const auto span = parse_span(written.text);
-    if (!span) {
-      return group_.error(written, "no performer has the id " + in_quotes(written.text), ids_hint());
-    }
-    if (span->first > span->second) {
-      return group_.error(written, in_quotes(written.text) + " runs backwards", "the smaller number stands first");
-    }
-    for (int id = span->first; id <= span->second; ++id) {
-      const auto one = ids_.find(std::to_string(id));
-      if (one == ids_.end()) {
-        return group_.error(written, "no performer has the id " + in_quotes(std::to_string(id)), ids_hint());
-      }
-      if (!join(written, one->second)) return;
-    }
+/// The people whom a list names by ids and ranges of numbers; `take` says whether to go on with a range.
+template <class Take>
+void each_person(const Show& show, const IdIndex& ids, MappingReader& mapping, const Written& written, Take take) {
+  const auto unknown = [&](const std::string& id) {
+    mapping.error(written, "no performer has the id " + in_quotes(id),
+                  show.performers.empty()
+                      ? std::string()
+                      : "ids run from " + show.performers.front().id + " to " + show.performers.back().id);
+  };
+  if (const auto one = ids.find(written.text); one != ids.end()) {
+    (void)take(one->second);
+    return;
   }
-
- private:
-  bool join(const Written& written, PerformerIndex performer) {
-    auto& group = show_.performers[performer.at()].group;
-    if (group) {  // in this one, too: so nobody is looked at twice, however often she is named
-      group_.error(written,
-                   "performer " + show_.performers[performer.at()].id + " is already in the group " +
-                       in_quotes(show_.groups[group->at()].name),
-                   "everybody is in one group at most");
-      return false;
-    }
-    group = index_;
-    return true;
+  const auto span = parse_span(written.text);
+  if (!span) return unknown(written.text);
+  if (span->first > span->second) {
+    return mapping.error(written, in_quotes(written.text) + " runs backwards", "the smaller number stands first");
   }
-  [[nodiscard]] std::string ids_hint() const {
-    if (show_.performers.empty()) return {};
-    return "ids run from " + show_.performers.front().id + " to " + show_.performers.back().id;
+  for (int id = span->first; id <= span->second; ++id) {
+    const auto one = ids.find(std::to_string(id));
+    if (one == ids.end()) return unknown(std::to_string(id));
+    if (!take(one->second)) return;
   }
+}
 
-  Show& show_;
-  MappingReader& group_;
-  GroupIndex index_;
-  const IdIndex& ids_;
-};
+/// Puts somebody into a group, and says when she is in two.
+bool join(Show& show, MappingReader& reader, const Written& written, GroupIndex index, PerformerIndex performer) {
+  auto& group = show.performers[performer.at()].group;
+  if (group) {  // in this one, too: so nobody is looked at twice, however often she is named
+    reader.error(written,
+                 "performer " + show.performers[performer.at()].id + " is already in the group " +
+                     in_quotes(show.groups[group->at()].name),
+                 "everybody is in one group at most");
+    return false;
+  }
+  group = index;
+  return true;
+}
 
 /// Names and colours; members later, as a roster's rows name groups and members name rows.
 std::vector<MappingReader> read_groups(ShowReading& show, MappingReader& performers) {
@@ -97,7 +85,8 @@ std::vector<MappingReader> read_groups(ShowReading& show, MappingReader& perform
       group.error("name", "a second group has the name " + in_quotes(*name), "names of groups are unique");
       continue;
     }
-    show.show().groups.push_back({*name, colour.value_or(Colour{255, 255, 255})});
+    show.show().groups.push_back(
+        {*name, colour.value_or(Colour{255, 255, 255}), group.boolean("exchange").value_or(true)});
     kept.push_back(std::move(group));
   }
   return kept;
@@ -125,6 +114,25 @@ void check_room(ShowReading& show, MappingReader& performers) {
 
 }  // namespace
 
+void read_absent(ShowReading& show, MappingReader& root) {
+  Show& read = show.show();
+  if (!show.has_performers || !root.has("absent")) return;
+  const IdIndex ids = index_ids(read.performers);
+  std::size_t absent = 0;
+  for (const Written& written : root.list("absent")) {
+    each_person(read, ids, root, written, [&](PerformerIndex performer) {
+      bool& away = read.performers[performer.at()].absent;
+      if (away) {
+        root.error(written, "performer " + read.performers[performer.at()].id + " is absent already", "once will do");
+        return false;
+      }
+      ++absent;
+      return away = true;
+    });
+  }
+  if (absent == read.performers.size()) root.error("absent", "nobody is left", "somebody has to come");
+}
+
 void read_performers(ShowReading& show, MappingReader performers) {
   if (const auto colour = read_colour(performers)) show.show().default_colour = *colour;
   auto groups = read_groups(show, performers);
@@ -138,8 +146,16 @@ void read_performers(ShowReading& show, MappingReader performers) {
   if (!show.has_performers) return;
   const IdIndex ids = index_ids(show.show().performers);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    Membership membership(show, groups[g], GroupIndex::of(g), ids);
-    for (const Written& written : groups[g].list("members")) membership.add(written);
+    for (const Written& written : groups[g].list("members")) {
+      each_person(show.show(), ids, groups[g], written, [&](PerformerIndex performer) {
+        return join(show.show(), groups[g], written, GroupIndex::of(g), performer);
+      });
+    }
+    const auto speed_mps = groups[g].quantity("max_speed");
+    for (Performer& performer : show.show().performers) {
+      const bool slow = speed_mps && performer.group == GroupIndex::of(g) && performer.max_speed_mps == 0;
+      if (slow) performer.max_speed_mps = *speed_mps;
+    }
   }
   check_room(show, performers);
 }

@@ -50,7 +50,8 @@ void add(Sha256& sum, const Formation& formation) {
   add(sum, formation.time);
   sum.integer(formation.frame ? 1 : 0).integer(formation.frame.value_or(0));
   add(sum, formation.cells);
-  sum.integer(formation.in_picture);
+  sum.integer(formation.in_picture).integer(formation.key ? 1 : 0);
+  sum.integer(formation.moved).integer(formation.pinned);
 }
 
 void add(Sha256& sum, const TransitionFacts& facts) {
@@ -65,7 +66,7 @@ void add(Sha256& sum, const TransitionFacts& facts) {
 
 std::string digest_of(const Plan& plan) {
   Sha256 sum;
-  sum.text("footlight plan 1").text(plan.title).text(plan.show_hash);
+  sum.text("footlight plan 2").text(plan.title).text(plan.show_hash);
   add(sum, plan.stage);
   add_list(sum, plan.performers, [&](const std::string& id) { sum.text(id); });
   add_list(sum, plan.radius_m, [&](double value) { sum.real(value); });

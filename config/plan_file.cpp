@@ -77,7 +77,7 @@ void write_sections(Database& database, const Plan& plan) {
 }
 
 void write_formations(Database& database, const Plan& plan) {
-  Statement row = database.prepare("INSERT INTO formations VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  Statement row = database.prepare("INSERT INTO formations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   std::int64_t number = 0;
   for (const Formation& formation : plan.formations) {
     row.bind(number++).bind(std::string_view(formation.id)).bind(std::int64_t{formation.section.value()});
@@ -87,7 +87,9 @@ void write_formations(Database& database, const Plan& plan) {
     } else {
       row.bind_null();
     }
-    row.bind_blob(encode_cells(formation.cells)).bind(std::int64_t{formation.in_picture}).run();
+    row.bind_blob(encode_cells(formation.cells)).bind(std::int64_t{formation.in_picture});
+    row.bind(std::int64_t{formation.key ? 1 : 0}).bind(std::int64_t{formation.moved});
+    row.bind(std::int64_t{formation.pinned}).run();
   }
 }
 

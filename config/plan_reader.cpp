@@ -241,9 +241,11 @@ class PlanReader {
   }
 
   bool formations() {
-    Rows rows(database_,
-              "SELECT number, id, section, count, time_ns, frame, cells, in_picture FROM formations ORDER BY number",
-              "formations");
+    Rows rows(
+        database_,
+        "SELECT number, id, section, count, time_ns, frame, cells, in_picture, key, moved, pinned FROM formations "
+        "ORDER BY number",
+        "formations");
     while (rows.next()) {
       Formation formation;
       formation.id = rows.text();
@@ -253,6 +255,9 @@ class PlanReader {
       formation.frame = rows.optional_number();
       formation.cells = rows.cells(plan_.stage.grid.size());
       formation.in_picture = rows.number(0, kMostPerformers);
+      formation.key = rows.number(0, 1) == 1;
+      formation.moved = rows.number(0, kMostPerformers);
+      formation.pinned = rows.number(0, kMostPerformers);
       if (formation.cells.size() != plan_.performers.size()) rows.wrong("not everybody has a cell");
       plan_.formations.push_back(std::move(formation));
     }

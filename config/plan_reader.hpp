@@ -11,7 +11,7 @@
 namespace footlight::config {
 
 inline constexpr std::int64_t kPlanApplicationId = 0x464C5054;  ///< "FLPT"
-inline constexpr std::int64_t kPlanVersion = 1;
+inline constexpr std::int64_t kPlanVersion = 2;
 
 /// The tables of a plan file; docs/plan-file.md says what stands in them. A file with any other schema is no plan.
 inline constexpr std::array kPlanSchema{
@@ -31,7 +31,8 @@ inline constexpr std::array kPlanSchema{
     "d REAL NOT NULL, e REAL NOT NULL, f REAL NOT NULL) STRICT",
     "CREATE TABLE notes(number INTEGER PRIMARY KEY, section INTEGER NOT NULL, text TEXT NOT NULL) STRICT",
     "CREATE TABLE formations(number INTEGER PRIMARY KEY, id TEXT NOT NULL, section INTEGER NOT NULL, "
-    "count REAL NOT NULL, time_ns INTEGER NOT NULL, frame INTEGER, cells BLOB NOT NULL, in_picture INTEGER NOT NULL) "
+    "count REAL NOT NULL, time_ns INTEGER NOT NULL, frame INTEGER, cells BLOB NOT NULL, in_picture INTEGER NOT NULL, "
+    "key INTEGER NOT NULL, moved INTEGER NOT NULL, pinned INTEGER NOT NULL) "
     "STRICT",
     "CREATE TABLE transitions(number INTEGER PRIMARY KEY, start_ns INTEGER NOT NULL, end_ns INTEGER NOT NULL, "
     "clearance_m REAL NOT NULL, closest_a INTEGER NOT NULL, closest_b INTEGER NOT NULL, closest_at_ns INTEGER NOT "

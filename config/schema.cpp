@@ -18,6 +18,7 @@ Json object_of(const Listing& listing);
 Json text_of(std::string_view pattern) { return {{"type", "string"}, {"pattern", pattern}}; }
 
 constexpr std::string_view kCells = "^[A-Za-z]+[1-9][0-9]*(:[A-Za-z]+[1-9][0-9]*)?$";
+constexpr std::string_view kCount = "^count +[0-9]*\\.?[0-9]+ *$";
 constexpr std::string_view kColour = "^#[0-9A-Fa-f]{6}$";
 
 /// Bounds of a number that has no unit; those of quantities are beyond what a pattern can say.
@@ -62,7 +63,7 @@ Json value_of(const Field& field) {
     case Type::counts:
       return quantity_of(field);
     case Type::at_count:
-      return text_of("^count +[0-9]*\\.?[0-9]+ *$");
+      return text_of(kCount);
     case Type::colour:
       return text_of(kColour);
     case Type::look_colour:
@@ -80,6 +81,12 @@ Json value_of(const Field& field) {
     case Type::threshold:
       return {{"anyOf",
                Json::array({Json{{"const", "otsu"}}, Json{{"type", "integer"}, {"minimum", 0}, {"maximum", 255}}})}};
+    case Type::instant:
+      return {{"anyOf", Json::array({text_of(kCount), text_of(pattern_of(Dimension::time))})}};
+    case Type::move:
+      return text_of("^ *[A-Za-z]+[1-9][0-9]* *-> *[A-Za-z]+[1-9][0-9]* *$");
+    case Type::pin:
+      return text_of("^.+-> *[A-Za-z]+[1-9][0-9]* *$");
     case Type::mapping:
       return object_of(*field.listing);
     case Type::lamp:

@@ -104,12 +104,17 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
   out.max_speed_mps = reader.quantity("max_speed");
   if (!std::holds_alternative<VideoSource>(out.from)) {
     refuse_keys(reader, {"duration", "sampling"}, "it goes with a video; a single formation has a hold");
+    refuse_keys(reader, {"keys"}, "only a video has key formations");
+  }
+  if (std::holds_alternative<CellsSource>(out.from)) {
+    refuse_keys(reader, {"overrides", "regions"}, "write it into the CSV file");
   }
   if (!name || !start || !hold) return std::nullopt;
   out.name = *name;
   out.start_count = *start;
   out.duration_counts = duration.value_or(0);
   out.hold_counts = *hold;
+  read_by_hand(show, reader, out);
   return out;
 }
 

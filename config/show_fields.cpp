@@ -74,7 +74,7 @@ const Listing& stage_listing() {
 const Listing& group_listing() {
   static const Listing kListing{
       "performers.groups[]",
-      "People who share a colour.",
+      "People who belong together.",
       {
           {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
           {.key = "members",
@@ -84,6 +84,16 @@ const Listing& group_listing() {
            .otherwise = "as the roster says",
            .list = true},
           {.key = "colour", .type = Type::colour, .doc = "Of their lamps.", .required = true},
+          {.key = "max_speed",
+           .type = Type::speed,
+           .doc = "Nobody in the group walks faster; a person's own limit in the roster goes before it.",
+           .otherwise = "the section's or the stage's",
+           .range = {0, 20, true}},
+          {.key = "exchange",
+           .type = Type::boolean,
+           .doc = "`false`: from the first formation to the last nobody else takes a place of the group; `true`: only "
+                  "between formations that give places to groups.",
+           .fallback = "true"},
       }};
   return kListing;
 }
@@ -157,7 +167,7 @@ const Listing& source_listing() {
           {.key = "image", .type = Type::file, .doc = "One picture (PNG, JPEG, BMP, PBM, PGM), one formation."},
           {.key = "cells",
            .type = Type::file,
-           .doc = "A CSV file of cells, one formation: `performer,col,row`, or without names `col,row`."},
+           .doc = "A CSV file of cells, one formation: `performer,col,row`, by groups `group,col,row`, or `col,row`."},
           {.key = "frames",
            .type = Type::frames,
            .doc = "First and last frame of the video, from 0, the last included; `100-` goes to the end.",
@@ -248,6 +258,57 @@ const Listing& planner_listing() {
   return kListing;
 }
 
+const Listing& override_listing() {
+  static const Listing kListing{
+      "sections[].overrides[]",
+      "What the director changes by hand in one formation, all at once. It becomes exact, and a key formation.",
+      {
+          {.key = "at", .type = Type::at_count, .doc = "The formation at this count.", .range = {1, kMost}},
+          {.key = "formation",
+           .type = Type::integer,
+           .doc = "The section's formation with this number, from 1, as in `growth/12`.",
+           .range = {1, 100'000}},
+          {.key = "move",
+           .type = Type::move,
+           .doc = "Who stands on the first cell stands on the second instead.",
+           .otherwise = "none",
+           .list = true},
+          {.key = "add",
+           .type = Type::cells,
+           .doc = "Cells that somebody from the reserve takes.",
+           .otherwise = "none",
+           .list = true},
+          {.key = "remove",
+           .type = Type::cells,
+           .doc = "Cells that are left empty: their people wait in the reserve.",
+           .otherwise = "none",
+           .list = true},
+          {.key = "pin",
+           .type = Type::pin,
+           .doc = "Who stands on which cell, by name.",
+           .otherwise = "none",
+           .list = true},
+      },
+      "at formation"};
+  return kListing;
+}
+
+const Listing& region_of_group_listing() {
+  static const Listing kListing{
+      "sections[].regions[]",
+      "Which places of the section's formations are a group's.",
+      {
+          {.key = "group", .type = Type::text, .doc = "Name of a group.", .required = true},
+          {.key = "cells",
+           .type = Type::cells,
+           .doc = "The group takes the places of each formation that lie here; where they are too few, the nearest "
+                  "ones beside them, and the reserve as before.",
+           .required = true,
+           .list = true},
+      }};
+  return kListing;
+}
+
 const Listing& section_listing() {
   static const Listing kListing{"sections[]",
                                 "A stretch of the show with one source of formations. Sections do not overlap.",
@@ -288,6 +349,24 @@ const Listing& section_listing() {
                                      .doc = "Nobody walks faster in this section, nor into it.",
                                      .otherwise = "`stage.max_speed`",
                                      .range = {0, 20, true}},
+                                    {.key = "keys",
+                                     .type = Type::instant,
+                                     .doc = "Counts, or times of the video's file, whose frames are the director's "
+                                            "key formations: exact, whatever is sampled between.",
+                                     .otherwise = "the sampled formations",
+                                     .list = true},
+                                    {.key = "overrides",
+                                     .type = Type::mapping,
+                                     .doc = "Formations changed by hand.",
+                                     .otherwise = "none",
+                                     .listing = &override_listing(),
+                                     .list = true},
+                                    {.key = "regions",
+                                     .type = Type::mapping,
+                                     .doc = "Groups bound to parts of the floor.",
+                                     .otherwise = "none",
+                                     .listing = &region_of_group_listing(),
+                                     .list = true},
                                 }};
   return kListing;
 }
@@ -410,6 +489,12 @@ const Listing& show_listing() {
            .doc = "How long before a move the next places light up.",
            .fallback = "4 counts",
            .range = {0, 1000}},
+          {.key = "absent",
+           .type = Type::members,
+           .doc = "Who does not come, as `members`: somebody who waits in the reserve all the time takes the place, or "
+                  "it stays empty; nobody else's marks change.",
+           .otherwise = "everybody comes",
+           .list = true},
           {.key = "rig",
            .type = Type::file,
            .doc = "Buses, nodes and lamps.",

@@ -18,6 +18,7 @@ void read_show(ShowReading& show, MappingReader& root) {
   show.show().title = root.text("title").value_or("");
   if (auto stage = root.mapping("stage")) read_stage(show, std::move(*stage));
   if (auto performers = root.mapping("performers")) read_performers(show, std::move(*performers));
+  read_absent(show, root);
   if (auto music = root.mapping("music")) read_music(show, std::move(*music));
   read_sections(show, root);
   read_cues(show, root);

@@ -33,6 +33,10 @@ void read_stage(ShowReading& show, MappingReader stage);
 void read_performers(ShowReading& show, MappingReader performers);
 void read_music(ShowReading& show, MappingReader music);
 void read_sections(ShowReading& show, MappingReader& root);
+/// `keys`, `overrides` and `regions` of a section whose start and duration are known.
+void read_by_hand(ShowReading& show, MappingReader& section, Section& out);
+/// `absent`: who does not come.
+void read_absent(ShowReading& show, MappingReader& root);
 /// "sections[2]": its place in the file, which need not be its place in time.
 [[nodiscard]] std::string section_path(const std::vector<Section>& sections, const Section& section);
 /// Sections ascending by start. Says which two overlap; a video without a duration has no length yet.
@@ -47,7 +51,8 @@ void read_looks(ShowReading& show, MappingReader looks);
                                                        const Grid& grid);
 
 /// CSV `performer,col,row` or `performer,cell`: a free cell for every performer; without the column `performer` as many
-/// free cells as there are performers. Errors with line and column.
+/// free cells as there are performers, whose places they are in the column `group`, if any. Errors with line and
+/// column.
 [[nodiscard]] CellsSource read_cells_csv(ShowReading& show, const std::string& file);
 /// CSV id,name,call_name,group,cast,cover,radius,speed,wearable; only id is needed.
 void read_roster_csv(ShowReading& show, const std::string& file);

@@ -31,6 +31,9 @@ struct Formation {
   std::optional<int> frame;      ///< of the video's file
   std::vector<CellIndex> cells;  ///< one for each performer, distinct
   int in_picture = 0;            ///< how many stand in the picture; the others are in the reserve or on the way
+  bool key = true;  ///< the director's (KF of Li 2020), exact where it is listed; else sampled between (p_t)
+  int moved = 0;    ///< people whom the director put elsewhere by hand
+  int pinned = 0;   ///< people whom the director put on a cell by name
 
   friend bool operator==(const Formation&, const Formation&) = default;
 };

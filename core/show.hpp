@@ -26,11 +26,15 @@ struct Performer {
       0;  ///< 0: the stage's clearance holds; else two people keep the sum of their radii where that is more
   double max_speed_mps = 0;  ///< 0: the section's or the stage's limit
   std::string wearable;      ///< id of the wearable in the rig; empty: none
+  bool absent = false;       ///< does not come: a stand-in takes the places, or they stay empty
 };
 
 struct Group {
   std::string name;
   Colour colour;
+  /// False: from the first formation to the last nobody else takes a place of the group. True: only between formations
+  /// that give places to groups.
+  bool exchange = true;
 };
 
 /// How a picture is laid on the stage.
@@ -63,6 +67,8 @@ struct CellsSource {
   std::string path;
   std::vector<CellIndex> cells;  ///< as many as performers; of performer p when assigned
   bool assigned = true;          ///< the file says who stands where
+  /// Whose place each cell is, where the file has a column of groups (then not assigned); nothing: of who is in none.
+  std::vector<std::optional<GroupIndex>> groups{};
 };
 using Source = std::variant<VideoSource, ImageSource, CellsSource>;
 
@@ -84,6 +90,46 @@ struct PlannerOptions {
   PairingCost cost = PairingCost::squared;
 };
 
+/// An instant of a video whose frame is one of the director's formations (KF of Li 2020), exact; what is sampled
+/// between (p_t) is the planner's.
+struct SectionKey {
+  std::optional<double> count;  ///< of the music
+  double film_s = 0;            ///< without a count: time of the video's file
+  Position position;
+};
+
+/// The cells of a section's formations that belong to a group.
+struct Region {
+  GroupIndex group;
+  std::vector<CellIndex> cells;  ///< ascending
+  Position position;
+};
+
+/// What a director changes by hand in one formation of a section; all of it happens at once.
+struct Override {
+  struct Move {
+    CellIndex from;
+    CellIndex to;
+    Position position;
+  };
+  struct Place {
+    CellIndex cell;
+    Position position;
+  };
+  struct Pin {
+    PerformerIndex performer;
+    CellIndex cell;
+    Position position;
+  };
+  std::optional<double> count;  ///< the formation at this count
+  int number = 0;               ///< without a count: the section's formation with this number, from 1
+  std::vector<Move> move;
+  std::vector<Place> add;     ///< somebody from the reserve comes here
+  std::vector<Place> remove;  ///< who is here goes to the reserve
+  std::vector<Pin> pin;
+  Position position;
+};
+
 /// A stretch of the show with one source of formations: [start, start + duration + hold].
 struct Section {
   std::string name;  ///< unique; the stable id
@@ -96,6 +142,9 @@ struct Section {
   Sampling sampling;
   PlannerOptions planner;
   std::optional<double> max_speed_mps;
+  std::vector<SectionKey> keys;  ///< of a video; without any the sampled formations are the key formations
+  std::vector<Override> overrides;
+  std::vector<Region> regions;
   Position position;  ///< of the section in the show file, for messages
 
   [[nodiscard]] double end_count() const { return start_count + duration_counts + hold_counts; }

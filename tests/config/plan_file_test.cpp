@@ -101,6 +101,9 @@ class AnyPlan {
   }
   Formation formation(int sections) {
     Formation out{text(), SectionIndex::of(number(sections)), real(), instant(), {}, {}, number(people_ + 1)};
+    out.key = rng_.below(2) == 0;
+    out.moved = number(9);
+    out.pinned = number(9);
     if (number(2) == 1) out.frame = number(1000);
     for (int i = 0; i < people_; ++i) out.cells.push_back(cell());
     return out;
@@ -260,7 +263,7 @@ TEST_F(HarmedPlan, ViewsTriggersAndStrangeTablesAreRefusedUnread) {
 
 TEST_F(HarmedPlan, AnotherVersionSaysWhichAndWhatToDo) {
   EXPECT_EQ(after("PRAGMA user_version = 7"),
-            "cannot use '" + file_ + "': it has version 7, this program reads version 1 (plan the show again)");
+            "cannot use '" + file_ + "': it has version 7, this program reads version 2 (plan the show again)");
 }
 
 TEST_F(HarmedPlan, OtherFilesAreNoPlans) {
