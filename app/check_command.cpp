@@ -11,6 +11,7 @@
 #include "app/load.hpp"
 #include "app/plan_step.hpp"
 #include "app/plan_summary.hpp"
+#include "app/simulated_buses.hpp"
 
 namespace footlight::app {
 namespace {
@@ -41,14 +42,18 @@ int run(Session& session, const Options& options) {
   auto planned = plan_anew(session, options.choice);
   if (!planned) return session.fail(planned.error());
   const Show& show = planned->loaded.show;
+  auto refused = refusal_of(planned->planned);
+  if (!refused) {
+    if (auto lit = check_delivery(show, planned->plan(), planned->loaded.rig); !lit) refused = std::move(lit).error();
+  }
   if (session.json) {
     auto result = nlohmann::ordered_json::parse(plan_json(show, planned->planned));
-    result["ok"] = planned->plan().valid;
+    result["ok"] = !refused;
     session.print(result.dump(1));
   } else {
     session.print(shortest_text(show, planned->planned));
   }
-  if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
+  if (refused) return session.fail(*refused);
   if (!session.json) session.print(fmt::format("{}: no errors ({})", options.choice.show, counts_of(show)));
   return 0;
 }
@@ -64,8 +69,9 @@ void add_check_command(CLI::App& program, Session& session, Chosen& chosen) {
   session.add_options(*command, true);
   command->footer(
       "Errors of all files are reported in one run, as file:line:column: error: key: what (what would be right).\n"
-      "Then the show is planned, to say how short each section could be at its speed limit, and what limits it.\n\n"
-      "Exit status: 0 nothing wrong, 2 errors in the files, 3 the show cannot be walked as it is.\n\n"
+      "Then the show is planned, to say how short each section could be at its speed limit, and what limits it, and\n"
+      "its lamps are set, to say whether every bus carries them in time.\n\n"
+      "Exit status: 0 nothing wrong, 2 errors in the files, 3 the show cannot be walked or lit as it is.\n\n"
       "Examples:\n  footlight check shows/vine/show.yaml\n  footlight check --no-media show.yaml   # while typing\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
 }

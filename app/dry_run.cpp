@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/marker_watch.hpp"
+#include "app/simulated_buses.hpp"
 #include "controller/bus_loop.hpp"
 #include "controller/cue_engine.hpp"
 #include "controller/cue_list.hpp"
@@ -110,27 +111,10 @@ class DryRun {
 };
 
 Status<> DryRun::connect() {
-  for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
-    const auto bus = BusIndex::of(b);
-    drivers::PortReference port;
-    switch (rig_.buses[b].kind) {
-      case BusKind::serial:
-        port = &simulated_.serial(bus);
-        break;
-      case BusKind::can:
-        port = &simulated_.can(bus);
-        break;
-      case BusKind::modbus_rtu:
-      case BusKind::modbus_tcp:
-        port = &simulated_.modbus(bus);
-        break;
-    }
-    auto driver =
-        drivers::make_driver(rig_.buses[b], drivers::node_addresses(rig_, bus), controller::plan_byte_of(plan_), port);
-    if (!driver) return driver.error();
-    latch_ahead_ = std::max(latch_ahead_, (*driver)->latch_time());
-    drivers_.push_back(std::move(driver).value());
-  }
+  auto drivers = drivers_on(simulated_, rig_, plan_);
+  if (!drivers) return std::move(drivers).error();
+  drivers_ = std::move(drivers).value();
+  for (const auto& driver : drivers_) latch_ahead_ = std::max(latch_ahead_, driver->latch_time());
   auto schedule = controller::build_schedule(show_, plan_, rig_, drivers_);
   if (!schedule) return schedule.error();
   schedule_ = std::move(schedule).value();
@@ -359,16 +343,7 @@ DryRunReport DryRun::report() {
 
 Result<DryRunReport> dry_run(const Show& show, const Plan& plan, Rig rig, const DryRunOptions& options) {
   if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
-  for (Bus& bus : rig.buses) {
-    if (bus.simulated()) continue;
-    bus.url = bus.kind == BusKind::serial       ? "sim://serial"
-              : bus.kind == BusKind::can        ? "sim://can"
-              : bus.kind == BusKind::modbus_tcp ? "sim://tcp"
-                                                : "sim://rtu";
-  }
-  auto plays = controller::cue_plays(show, plan);
-  if (!plays) return plays.error();
-  return DryRun(show, plan, std::move(rig), std::move(plays).value(), options).run();
+  return DryRun(show, plan, with_simulated_buses(std::move(rig)), controller::cue_plays(show, plan), options).run();
 }
 
 }  // namespace footlight::app

@@ -24,9 +24,9 @@ std::optional<CueNumber> read_number(MappingReader& cue) {
   return number;
 }
 
-std::optional<SectionIndex> read_section_name(MappingReader& cue, const ShowReading& reading) {
+std::optional<SectionIndex> read_section_name(MappingReader& cue, const std::optional<Written>& written,
+                                              const ShowReading& reading) {
   const Show& show = reading.show();
-  const auto written = cue.written("section");
   if (!written) return std::nullopt;
   const auto found = std::find_if(show.sections.begin(), show.sections.end(),
                                   [&](const Section& section) { return section.name == written->text; });
@@ -40,12 +40,19 @@ std::optional<SectionIndex> read_section_name(MappingReader& cue, const ShowRead
   return std::nullopt;
 }
 
-std::optional<Cue> read_cue(MappingReader& reader, const ShowReading& reading) {
+/// A cue, and where its section is named.
+struct CueEntry {
+  Cue cue;
+  Written section;
+};
+
+std::optional<CueEntry> read_cue(MappingReader& reader, const ShowReading& reading) {
   const Show& show = reading.show();
   Cue out;
   out.position = reader.position();
   const auto number = read_number(reader);
-  const auto section = read_section_name(reader, reading);
+  const auto written = reader.written("section");
+  const auto section = read_section_name(reader, written, reading);
   const auto name = reader.text("name");
   out.continue_mode = static_cast<ContinueMode>(reader.choice("continue").value_or(0));
   out.pre_wait = seconds(reader.quantity("pre_wait").value_or(0));
@@ -55,7 +62,23 @@ std::optional<Cue> read_cue(MappingReader& reader, const ShowReading& reading) {
   out.number = *number;
   out.section = *section;
   out.name = name.value_or(show.sections[section->at()].name);
-  return out;
+  return CueEntry{std::move(out), *written};
+}
+
+/// @param cues ascending by number
+void check_order(const std::vector<CueEntry>& cues, const std::vector<Section>& sections, MappingReader& root) {
+  const CueEntry* before = nullptr;
+  for (const CueEntry& entry : cues) {
+    if (before == nullptr || before->cue.section < entry.cue.section) {
+      before = &entry;
+      continue;
+    }
+    root.error(entry.section,
+               "cue " + entry.cue.number.to_text() + " plays section " + in_quotes(entry.section.text) +
+                   ", which does not come after section " + in_quotes(sections[before->cue.section.at()].name) +
+                   " of cue " + before->cue.number.to_text(),
+               "cues play their sections in the order of the show, each section once");
+  }
 }
 
 /// Without cues one GO plays the whole show.
@@ -109,21 +132,25 @@ void read_cues(ShowReading& show, MappingReader& root) {
     return;
   }
   std::map<CueNumber, Position> first_at;
+  std::vector<CueEntry> entries;
   for (MappingReader& reader : root.mappings("cues")) {
-    auto cue = read_cue(reader, show);
-    if (!cue) continue;
-    const auto [first, is_new] = first_at.emplace(cue->number, cue->position);
+    auto entry = read_cue(reader, show);
+    if (!entry) continue;
+    const auto [first, is_new] = first_at.emplace(entry->cue.number, entry->cue.position);
     if (!is_new) {
       const auto written = reader.written("number");
-      const std::string number = cue->number.to_text();
+      const std::string number = entry->cue.number.to_text();
       reader.error("number", "a second cue has the number " + number,
                    (written->text == number ? "" : written->text + " equals " + number + "; ") + "first in line " +
                        std::to_string(first->second.line));
       continue;
     }
-    out.push_back(std::move(*cue));
+    entries.push_back(std::move(*entry));
   }
-  std::stable_sort(out.begin(), out.end(), [](const Cue& a, const Cue& b) { return a.number < b.number; });
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const CueEntry& a, const CueEntry& b) { return a.cue.number < b.cue.number; });
+  check_order(entries, show.show().sections, root);
+  for (CueEntry& entry : entries) out.push_back(std::move(entry.cue));
 }
 
 void read_looks(ShowReading& show, MappingReader looks) {

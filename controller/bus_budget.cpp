@@ -12,6 +12,8 @@
 namespace footlight::controller {
 namespace {
 
+constexpr std::size_t kShownBuses = 10;
+
 double ms(Duration duration) { return static_cast<double>(duration.count()) * 1e-6; }
 
 double excess(const BusNeed& need) { return ms(need.needed()) / std::max(ms(need.allowed()), 1e-3); }
@@ -45,6 +47,51 @@ BusNeed need_of(const CueSchedule& schedule, const Rig& rig, BusIndex bus, std::
   return need;
 }
 
+/// The need of a bus that exceeds what is allowed most.
+struct Worst {
+  const BusNeed* need = nullptr;  ///< null when all of them fit
+  std::size_t misfits = 0;
+  std::size_t switches = 0;
+};
+
+Worst worst_of(const std::vector<BusNeed>& needs, BusIndex bus) {
+  Worst worst;
+  for (const BusNeed& need : needs) {
+    if (need.bus != bus) continue;
+    ++worst.switches;
+    if (need.fits()) continue;
+    ++worst.misfits;
+    if (worst.need == nullptr || excess(need) > excess(*worst.need)) worst.need = &need;
+  }
+  return worst;
+}
+
+Diagnostic complaint(const Worst& worst, const CueSchedule& schedule, const Rig& rig, const Show& show) {
+  const BusNeed& need = *worst.need;
+  const Bus& bus = rig.buses[need.bus.at()];
+  const Switch& due = schedule.switches()[need.k];
+  const auto counts_before = [&](Duration duration) {
+    return show.tempo.count_at(due.time) - show.tempo.count_at(due.time - duration);
+  };
+  Diagnostic out;
+  out.position = rig.file.empty() ? Position{show.file} : bus.position;
+  out.key_path = rig.file.empty() ? "" : fmt::format("buses[{}]", need.bus.at());
+  out.text = fmt::format(
+      "the {} bus \"{}\" at {} bit/s cannot carry switch {} \"{}\" (count {:.6g}, {:.3f} s) in time: {} nodes change: "
+      "preloads {:.1f} ms + {} receipts of the switch before {:.1f} ms + latch {:.1f} ms = {:.1f} ms; the switch "
+      "before "
+      "is {:.1f} ms earlier, of which {:.1f} ms may be used and {:.0f} % stay in reserve; {} of {} switches do not fit",
+      to_text(bus.kind), bus.name, bus.bits_per_second, need.k, due.cause, show.tempo.count_at(due.time),
+      to_seconds(due.time), need.changed, ms(need.preloads), need.verified, ms(need.receipts), ms(need.latch),
+      ms(need.needed()), ms(need.available), ms(need.allowed()), kBusReserve * 100, worst.misfits, worst.switches);
+  out.hint = fmt::format(
+      "share its nodes among {} buses, or raise the bit rate, which does not shorten silences and turnarounds, or "
+      "leave {:.2f} counts between these switches instead of {:.2f}",
+      static_cast<int>(std::ceil(excess(need))), counts_before(seconds(ms(need.needed()) / 1e3 / (1 - kBusReserve))),
+      counts_before(need.available));
+  return out;
+}
+
 }  // namespace
 
 std::vector<BusNeed> bus_needs(const CueSchedule& schedule, const Rig& rig,
@@ -64,39 +111,17 @@ std::vector<BusNeed> bus_needs(const CueSchedule& schedule, const Rig& rig,
   return needs;
 }
 
-Error over_budget(const std::vector<BusNeed>& needs, const CueSchedule& schedule, const Rig& rig,
-                  const TempoMap& tempo) {
-  const BusNeed* worst = nullptr;
-  std::size_t misfits = 0;
-  for (const BusNeed& need : needs) {
-    if (need.fits()) continue;
-    ++misfits;
-    if (worst == nullptr || excess(need) > excess(*worst)) worst = &need;
+Error over_budget(const std::vector<BusNeed>& needs, const CueSchedule& schedule, const Rig& rig, const Show& show) {
+  std::string lines;
+  std::size_t overloaded = 0;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const auto worst = worst_of(needs, BusIndex::of(b));
+    if (!worst.need || overloaded++ >= kShownBuses) continue;
+    lines += (lines.empty() ? "" : "\n") + to_text(complaint(worst, schedule, rig, show));
   }
-  FL_CHECK(worst != nullptr);
-  const Bus& bus = rig.buses[worst->bus.at()];
-  const Switch& due = schedule.switches()[worst->k];
-  const double times = excess(*worst);
-  Diagnostic diagnostic;
-  diagnostic.position = bus.position;
-  diagnostic.key_path = "buses." + bus.name;
-  diagnostic.text = fmt::format(
-      "the {} bus at {} bit/s cannot carry switch {} \"{}\" (count {:.6g}, {:.3f} s) in time: {} nodes change: "
-      "preloads "
-      "{:.1f} ms + {} receipts of the switch before {:.1f} ms + latch {:.1f} ms = {:.1f} ms; the switch before is "
-      "{:.1f} "
-      "ms earlier, of which {:.1f} ms may be used and {:.0f} % stay in reserve; {} of {} switches do not fit",
-      to_text(bus.kind), bus.bits_per_second, worst->k, due.cause, tempo.count_at(due.time), to_seconds(due.time),
-      worst->changed, ms(worst->preloads), worst->verified, ms(worst->receipts), ms(worst->latch), ms(worst->needed()),
-      ms(worst->available), ms(worst->allowed()), kBusReserve * 100, misfits, needs.size());
-  diagnostic.hint = fmt::format(
-      "share its nodes among {} buses, or raise the bit rate, which does not shorten silences and turnarounds, or "
-      "leave {:.2f} "
-      "counts between these switches instead of {:.2f}",
-      static_cast<int>(std::ceil(times)),
-      tempo.count_at(due.time) - tempo.count_at(due.time - seconds(ms(worst->needed()) / 1e3 / (1 - kBusReserve))),
-      tempo.count_at(due.time) - tempo.count_at(due.time - worst->available));
-  return refusal(to_text(diagnostic));
+  FL_CHECK(overloaded > 0);
+  if (overloaded > kShownBuses) lines += fmt::format("\nand {} more buses", overloaded - kShownBuses);
+  return refusal(lines);
 }
 
 }  // namespace footlight::controller

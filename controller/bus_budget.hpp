@@ -37,8 +37,9 @@ struct BusNeed {
                                              const std::vector<std::unique_ptr<drivers::Driver>>& drivers,
                                              std::span<const Duration> gaps);
 
-/// One message about the need that is worst of those that do not fit, with the arithmetic and what would help.
+/// A line for each overloaded bus about its worst need, with the arithmetic and what would help. At least one need must
+/// not fit.
 [[nodiscard]] Error over_budget(const std::vector<BusNeed>& needs, const CueSchedule& schedule, const Rig& rig,
-                                const TempoMap& tempo);
+                                const Show& show);
 
 }  // namespace footlight::controller

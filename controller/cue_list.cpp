@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/check.hpp"
-#include "core/diagnostic.hpp"
 
 namespace footlight::controller {
 namespace {
@@ -25,16 +24,6 @@ std::vector<Cue> cues_of(const Show& show, const Plan& plan) {
   return cues;
 }
 
-Error out_of_order(const Cue& cue, const Cue& before, const Plan& plan) {
-  Diagnostic diagnostic;
-  diagnostic.position = cue.position;
-  diagnostic.text = "cue " + cue.number.to_text() + " plays section \"" + plan.sections.at(cue.section.at()).name +
-                    "\", which does not come after section \"" + plan.sections.at(before.section.at()).name +
-                    "\" of cue " + before.number.to_text();
-  diagnostic.hint = "cues play their sections in the order of the show, each section once";
-  return input_error(to_text(diagnostic));
-}
-
 std::optional<Duration> gap_between(const CuePlay& play, const Cue& next) {
   switch (play.cue.continue_mode) {
     case ContinueMode::manual:
@@ -49,14 +38,14 @@ std::optional<Duration> gap_between(const CuePlay& play, const Cue& next) {
 
 }  // namespace
 
-Result<std::vector<CuePlay>> cue_plays(const Show& show, const Plan& plan) {
+std::vector<CuePlay> cue_plays(const Show& show, const Plan& plan) {
   FL_CHECK(!plan.tracks.empty() && !plan.tracks.front().empty());
   const std::vector<Cue> cues = cues_of(show, plan);
   std::vector<CuePlay> plays;
   Instant from = plan.tracks.front().front().time;
   const Instant last = plan.tracks.front().back().time;
   for (std::size_t c = 0; c < cues.size(); ++c) {
-    if (c > 0 && !(cues[c - 1].section < cues[c].section)) return out_of_order(cues[c], cues[c - 1], plan);
+    FL_CHECK(c == 0 || cues[c - 1].section < cues[c].section);
     const Instant end = c + 1 == cues.size() ? last : plan.sections.at(cues[c].section.at()).end;
     plays.push_back({cues[c], from, std::max(from, end), std::nullopt});
     from = plays.back().to;

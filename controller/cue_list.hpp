@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/plan.hpp"
-#include "core/result.hpp"
 #include "core/show.hpp"
 
 namespace footlight::controller {
@@ -34,7 +33,6 @@ struct CuePlay {
 ///
 /// auto-follow: the next cue begins post_wait after the end of this one's section, plus its own pre_wait.
 /// auto-continue: post_wait after this one's start, but never before the end of its section, plus the next's pre_wait.
-/// @return ErrorKind::input, positioned, when cues do not play their sections in ascending order
-[[nodiscard]] Result<std::vector<CuePlay>> cue_plays(const Show& show, const Plan& plan);
+[[nodiscard]] std::vector<CuePlay> cue_plays(const Show& show, const Plan& plan);
 
 }  // namespace footlight::controller

@@ -13,6 +13,7 @@
 #include "controller/lamp.hpp"
 #include "controller/patterns.hpp"
 #include "core/check.hpp"
+#include "core/diagnostic.hpp"
 
 namespace footlight::controller {
 
@@ -80,7 +81,11 @@ constexpr std::uint16_t kDarkEntry = std::numeric_limits<std::uint16_t>::max();
 class Compiler {
  public:
   Compiler(const Show& show, const Plan& plan, const Rig& rig, const std::vector<CuePlay>& plays)
-      : plan_(plan), crowd_(show, plan, plays), book_(show, plan.tracks.size()), nodes_(rig.nodes.size()) {
+      : show_file_(show.file),
+        plan_(plan),
+        crowd_(show, plan, plays),
+        book_(show, plan.tracks.size()),
+        nodes_(rig.nodes.size()) {
     lit_.resize(static_cast<std::size_t>(plan.stage.grid.size()));
     for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
       for (std::size_t c = 0; c < rig.nodes[n].channels.size(); ++c) {
@@ -101,9 +106,14 @@ class Compiler {
     int patterns = kPatterns;
     while (patterns > 1 && book_.different(patterns) + 1 > kMostLooks) patterns /= 2;
     if (book_.different(patterns) + 1 > kMostLooks) {
-      return input_error("the groups' colours need " + std::to_string(book_.different(patterns) + 1) +
-                         " looks and a marker's look table holds 254 (give groups that never stand side by side the "
-                         "same colour, or give looks a colour of their own)");
+      Diagnostic diagnostic;
+      diagnostic.position.file = show_file_;
+      diagnostic.key_path = "performers.groups";
+      diagnostic.text = "the groups' colours need " + std::to_string(book_.different(patterns) + 1) +
+                        " looks and a marker's look table holds 254";
+      diagnostic.hint =
+          "give groups that never stand side by side the same colour, or give looks a colour of their own";
+      return input_error(to_text(diagnostic));
     }
     NearGoals near(plan_.tracks.size());
     for (std::size_t k = 0; k < crowd_.moments().size(); ++k) {
@@ -210,6 +220,7 @@ class Compiler {
     return CueSchedule(std::move(looks), std::move(switches), nodes_, std::move(table), plan_byte_of(plan_), confusion);
   }
 
+  const std::string& show_file_;
   const Plan& plan_;
   Crowd crowd_;
   LookBook book_;
@@ -274,14 +285,13 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
     return refusal("the plan of \"" + plan.title +
                    "\" is not valid and never lights a marker (footlight plan says what is wrong with it)");
   }
-  Result<std::vector<CuePlay>> plays = cue_plays(show, plan);
-  if (!plays) return plays.error();
-  Result<CueSchedule> schedule = Compiler(show, plan, rig, *plays).compile();
+  const std::vector<CuePlay> plays = cue_plays(show, plan);
+  Result<CueSchedule> schedule = Compiler(show, plan, rig, plays).compile();
   if (!schedule) return schedule;
   std::vector<Duration> gaps;
-  for (const CuePlay& play : *plays) gaps.push_back(play.gap_after.value_or(kShortestHold));
+  for (const CuePlay& play : plays) gaps.push_back(play.gap_after.value_or(kShortestHold));
   const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);
-  if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show.tempo);
+  if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show);
   return schedule;
 }
 

@@ -69,7 +69,7 @@ class CueSchedule {
 
 /// Compiles a valid plan. Refused (ErrorKind::refused) for a plan that is not valid and, with the arithmetic, for a bus
 /// that cannot carry a switch's preloads and receipts before it is due with 30 % reserve.
-/// ErrorKind::input when the cues or the looks of the show cannot be played.
+/// ErrorKind::input when the looks of the show are too many for a marker.
 /// @param drivers one for each bus of the rig, for their budgets
 /// Complexity: O(switches x (performers + cells + markers)). Deterministic.
 [[nodiscard]] Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,

@@ -188,7 +188,7 @@ struct Show {
   std::vector<Group> groups;
   TempoMap tempo;
   std::vector<Section> sections;  ///< ascending by start, not overlapping
-  std::vector<Cue> cues;          ///< ascending by number
+  std::vector<Cue> cues;          ///< ascending by number and by section
   std::map<LampRole, LookChoice> looks;
   double announce_counts = 4;            ///< the next places light this long before a move; a count-down
   Colour default_colour{255, 255, 255};  ///< of performers without a group

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
 #include "tests/support/starter_show.hpp"
@@ -13,8 +15,10 @@
 namespace footlight {
 namespace {
 
+using nlohmann::json;
 using test::footlight;
 using test::Ran;
+using ::testing::MatchesRegex;
 
 constexpr const char* kRing = "{cells: ring.csv}, start: count 25, hold: 8 counts";
 
@@ -168,14 +172,33 @@ TEST_F(BadInput, ANodeWith33Channels) {
 
 TEST_F(BadInput, ABusThatCannotCarryItsCuesInTime) {
   rig("rig: 1\nbuses: [{name: a, url: \"sim://rtu\", bits_per_second: 1200}]\nfloor: {buses: a}\n");
-  expect_refused(3,
-                 "@/rig.yaml:2:9: error: buses.a: the modbus-rtu bus at 1200 bit/s cannot carry switch 3 \"ring at "
-                 "count 9\" (count 9, 4.800 s) in time: 3 nodes change: preloads 1595.0 ms + 3 receipts of the switch "
-                 "before 880.0 ms + latch 169.6 ms = 2644.6 ms; the switch before is 2400.0 ms earlier, of which "
-                 "1680.0 ms may be used and 30 % stay in reserve; 4 of 7 switches do not fit (share its nodes among 2 "
-                 "buses, or raise the bit rate, which does not shorten silences and turnarounds, or leave 6.30 counts "
-                 "between these switches instead of 4.00)",
-                 {"dryrun"});
+  expect_refused(
+      3,
+      "@/rig.yaml:2:9: error: buses[0]: the modbus-rtu bus \"a\" at 1200 bit/s cannot carry switch 3 \"ring at "
+      "count 9\" (count 9, 4.800 s) in time: 3 nodes change: preloads 1595.0 ms + 3 receipts of the switch "
+      "before 880.0 ms + latch 169.6 ms = 2644.6 ms; the switch before is 2400.0 ms earlier, of which "
+      "1680.0 ms may be used and 30 % stay in reserve; 4 of 7 switches do not fit (share its nodes among 2 "
+      "buses, or raise the bit rate, which does not shorten silences and turnarounds, or leave 6.30 counts "
+      "between these switches instead of 4.00)",
+      {"check", "dryrun"});
+}
+
+TEST_F(BadInput, EveryBusThatCannotCarryItsCuesIsNamed) {
+  rig("rig: 1\nbuses:\n  - {name: a, url: \"sim://rtu\", bits_per_second: 1200}\n"
+      "  - {name: b, url: \"sim://rtu\"}\n  - {name: c, url: \"sim://rtu\", bits_per_second: 1200}\n"
+      "floor: {buses: [a, b, c], channels_per_node: 4}\n");
+  const Ran ran = footlight({"check", show_});
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_THAT(ran.err,
+              MatchesRegex(".*/rig.yaml:3:5: error: buses\\[0\\]: .*\n.*/rig.yaml:5:5: error: buses\\[2\\]: .*\n"));
+  EXPECT_EQ(json::parse(footlight({"check", "--json", show_}).out)["ok"], false);
+}
+
+TEST_F(BadInput, ACueThatPlaysAnEarlierSection) {
+  replace("section: arrow, name: Arrow", "section: line, name: Arrow");
+  expect_refused(2,
+                 "@/show.yaml:34:28: error: cues[2].section: cue 3 plays section \"line\", which does not come after "
+                 "section \"ring\" of cue 2 (cues play their sections in the order of the show, each section once)");
 }
 
 TEST_F(BadInput, AnAliasThatContainsItself) {

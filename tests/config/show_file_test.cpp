@@ -343,6 +343,22 @@ TEST_F(ShowFile, WantsQuotedAndUniqueCueNumbers) {
             "digits, at most one point and six decimals)\n");
 }
 
+TEST_F(ShowFile, WantsCuesInTheOrderOfTheirSections) {
+  EXPECT_EQ(errors_of("sections:\n"
+                      "  - {name: b, from: {cells: a.csv}, start: count 9}\n"
+                      "  - {name: a, from: {cells: a.csv}, start: count 1}\n"
+                      "  - {name: c, from: {cells: a.csv}, start: count 17}\n"
+                      "cues:\n"
+                      "  - {number: \"3\", section: b}\n"
+                      "  - {number: \"1\", section: a}\n"
+                      "  - {number: \"2.5\", section: c}\n"
+                      "  - {number: \"4\", section: c}\n"),
+            "show.yaml:10:28: error: cues[0].section: cue 3 plays section \"b\", which does not come after section "
+            "\"c\" of cue 2.5 (cues play their sections in the order of the show, each section once)\n"
+            "show.yaml:13:28: error: cues[3].section: cue 4 plays section \"c\", which does not come after section "
+            "\"c\" of cue 2.5 (cues play their sections in the order of the show, each section once)\n");
+}
+
 TEST_F(ShowFile, KnowsWhichSectionsThereAre) {
   EXPECT_EQ(errors_of("sections: [{name: growth, from: {cells: a.csv}, start: count 1}]\n"
                       "cues: [{number: \"1\", section: grwth}, {number: \"2\", section: x, continue: auto}]\n"),

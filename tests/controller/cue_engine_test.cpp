@@ -19,7 +19,7 @@ struct Bench {
     SmallShow small = random_show(6, 6, 4, 3, 2, 1);
     small.show.cues = std::move(cues);
     schedule.emplace(build_schedule(small.show, small.plan, {}, {}).value());
-    auto plays = cue_plays(small.show, small.plan).value();
+    auto plays = cue_plays(small.show, small.plan);
     notices.resize(plays.size());
     engine.emplace(*schedule, std::move(plays), std::move(notices));
   }

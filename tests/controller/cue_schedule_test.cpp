@@ -198,6 +198,7 @@ TEST(CueSchedule, RefusesAPlanThatIsNotProved) {
 
 TEST(CueSchedule, RefusesMoreColoursThanALookTableHolds) {
   SmallShow small = three_people();
+  small.show.file = "show.yaml";
   small.show.groups.clear();
   small.show.performers.clear();
   small.plan.tracks.resize(1);
@@ -210,15 +211,15 @@ TEST(CueSchedule, RefusesMoreColoursThanALookTableHolds) {
   }
   const auto schedule = build_schedule(small.show, small.plan, small.rig, fake_drivers(small.rig));
   ASSERT_FALSE(schedule.has_value());
-  EXPECT_EQ(
-      schedule.error(),
-      input_error("the groups' colours need 301 looks and a marker's look table holds 254 (give groups that never "
-                  "stand side by side the same colour, or give looks a colour of their own)"));
+  EXPECT_EQ(schedule.error(), input_error("show.yaml: error: performers.groups: the groups' colours need 301 looks and "
+                                          "a marker's look table holds 254 (give groups that never "
+                                          "stand side by side the same colour, or give looks a colour of their own)"));
 }
 
 TEST(BusBudget, ABusThatCannotCarryASwitchIsRefusedWithTheArithmetic) {
   SmallShow small = random_show(40, 32, 700, 1, 3, 9);
   small.rig = lamps_everywhere(small.show.stage.grid, {BusKind::serial}, 115'200, 8);
+  small.rig.file = "rig.yaml";
   small.rig.buses[0].position = {"rig.yaml", 3, 7};
   // 160 nodes that change at every switch, a second apart: 640 ms of preloads, 480 ms of receipts, a latch of 1 ms.
   const auto schedule = build_schedule(small.show, small.plan, small.rig, fake_drivers(small.rig));
@@ -226,7 +227,8 @@ TEST(BusBudget, ABusThatCannotCarryASwitchIsRefusedWithTheArithmetic) {
   EXPECT_EQ(schedule.error().kind, ErrorKind::refused);
   EXPECT_EQ(
       schedule.error().message,
-      "rig.yaml:3:7: error: buses.bus1: the serial bus at 115200 bit/s cannot carry switch 5 \"s1/3\" (count 9, 4.000 "
+      "rig.yaml:3:7: error: buses[0]: the serial bus \"bus1\" at 115200 bit/s cannot carry switch 5 \"s1/3\" (count 9, "
+      "4.000 "
       "s) in time: 160 nodes change: preloads 640.0 ms + 145 receipts of the switch before 435.0 ms + latch 1.0 ms "
       "= 1076.0 ms; the switch before is 1000.0 ms earlier, of which 700.0 ms may be used and 30 % stay in reserve; "
       "4 of 5 switches do not fit (share its nodes among 2 buses, or raise the bit rate, which does not shorten "

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/simulated_buses.hpp"
+
+#include <utility>
+
+#include "controller/cue_schedule.hpp"
+#include "core/clock.hpp"
+#include "drivers/registry.hpp"
+
+namespace footlight::app {
+namespace {
+
+const char* simulated_url(BusKind kind) {
+  switch (kind) {
+    case BusKind::serial:
+      return "sim://serial";
+    case BusKind::can:
+      return "sim://can";
+    case BusKind::modbus_tcp:
+      return "sim://tcp";
+    case BusKind::modbus_rtu:
+      return "sim://rtu";
+  }
+  return "sim://rtu";
+}
+
+drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, BusIndex bus) {
+  switch (rig.buses[bus.at()].kind) {
+    case BusKind::serial:
+      return &simulated.serial(bus);
+    case BusKind::can:
+      return &simulated.can(bus);
+    case BusKind::modbus_rtu:
+    case BusKind::modbus_tcp:
+      return &simulated.modbus(bus);
+  }
+  return {};
+}
+
+}  // namespace
+
+Rig with_simulated_buses(Rig rig) {
+  for (Bus& bus : rig.buses) {
+    if (!bus.simulated()) bus.url = simulated_url(bus.kind);
+  }
+  return rig;
+}
+
+Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated, const Rig& rig,
+                                                                 const Plan& plan) {
+  std::vector<std::unique_ptr<drivers::Driver>> out;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const auto bus = BusIndex::of(b);
+    auto driver = drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, bus), controller::plan_byte_of(plan),
+                                       port_of(simulated, rig, bus));
+    if (!driver) return std::move(driver).error();
+    out.push_back(std::move(driver).value());
+  }
+  return out;
+}
+
+Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
+  const Rig wires = with_simulated_buses(rig);
+  ManualClock clock;
+  sim::SimulatedRig simulated(wires, {}, 1, kStart, Duration{}, clock, nullptr);
+  const auto drivers = drivers_on(simulated, wires, plan);
+  if (!drivers) return drivers.error();
+  const auto schedule = controller::build_schedule(show, plan, wires, *drivers);
+  if (!schedule) return schedule.error();
+  return Done{};
+}
+
+}  // namespace footlight::app

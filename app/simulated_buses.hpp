@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/plan.hpp"
+#include "core/result.hpp"
+#include "core/rig.hpp"
+#include "core/show.hpp"
+#include "drivers/driver.hpp"
+#include "sim/simulated_rig.hpp"
+
+namespace footlight::app {
+
+/// The rig with every bus that has a real URL simulated as its kind.
+[[nodiscard]] Rig with_simulated_buses(Rig rig);
+
+/// The real drivers on simulated buses, one for each bus of the rig. Errors: addresses that a bus cannot have.
+[[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated,
+                                                                               const Rig& rig, const Plan& plan);
+
+/// Whether the lamps of a valid plan can be lit in time: an error where build_schedule has one. Nothing is played.
+[[nodiscard]] Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig);
+
+}  // namespace footlight::app
