@@ -14,12 +14,22 @@ namespace footlight::app {
 /// The best formation of each single frame, for each section; absent without a film.
 using SectionBests = std::vector<std::optional<planner::SingleFigures>>;
 
-/// A table of a line for each section and one for the show.
-/// @param bests for each section, or empty: not asked for
-[[nodiscard]] std::string measure_text(const Plan& plan, const planner::ShowMeasures& measures,
-                                       const SectionBests& bests = {});
-/// The same for programs; figures that do not exist are null (no film, one performer).
-[[nodiscard]] std::string measure_json(const Plan& plan, const planner::ShowMeasures& measures,
-                                       const SectionBests& bests = {});
+/// A plan and everything that was measured of it.
+struct MeasuredPlan {
+  std::string file;  ///< as the user named it
+  Plan plan;
+  planner::ShowMeasures measures;
+  std::vector<double> lag_s;         ///< tolerated, one for each of the plan's transitions
+  SectionBests bests;                ///< empty: not asked for
+  std::optional<double> planning_s;  ///< absent when the plan came from a file
+};
+
+/// Three tables, of the drawing, of clearances and of ways, with a line for each section and one for the show; of
+/// several plans with a line for each plan instead.
+/// @param plans at least one
+[[nodiscard]] std::string measure_text(const std::vector<MeasuredPlan>& plans);
+/// The same for programs; figures that do not exist are null (no film, one performer). One plan is an object, several
+/// are `plans` in one.
+[[nodiscard]] std::string measure_json(const std::vector<MeasuredPlan>& plans);
 
 }  // namespace footlight::app

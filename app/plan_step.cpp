@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "config/plan_file.hpp"
+#include "core/clock.hpp"
 #include "planner/validate.hpp"
 
 namespace footlight::app {
@@ -27,7 +28,9 @@ Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, i
   if (threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   }
+  const SteadyClock clock;
   auto planned = planner::plan_show(out.loaded.show, *out.films, session.progress());
+  out.planning = clock.now().time_since_epoch();
   session.clear_line();
   if (!planned) return std::move(planned).error();
   if (session.stopped()) return interrupted();
@@ -45,10 +48,10 @@ std::optional<Error> broken_limit(const Plan& plan, const std::string& file) {
                              verdict.first.empty() ? "see footlight measure" : verdict.first.front().text));
 }
 
-/// The plan of the file if it is of the show with this hash and keeps its limits.
-/// @param wanted  the user named it: it must fit
-Result<std::optional<Plan>> plan_from_file(Session& session, const std::string& file, const std::string& hash,
-                                           bool wanted) {
+/// The plan of the file if it is of the show with this hash and keeps its limits; one that the user named must fit.
+Result<std::optional<Plan>> plan_from_file(Session& session, const PlanChoice& choice, const std::string& hash) {
+  const bool wanted = !choice.plan.empty();
+  const std::string file = wanted ? choice.plan : plan_file_beside(choice.show);
   const auto anew = [&](const std::string& why) {
     session.note(why);
     return std::optional<Plan>();
@@ -67,11 +70,10 @@ Result<std::optional<Plan>> plan_from_file(Session& session, const std::string& 
     return input_error(
         fmt::format("'{}' was planned from another show, or before the show was changed (plan it again)", file));
   }
-  if (auto broken = broken_limit(*plan, file)) {
-    if (wanted) return *std::move(broken);
-    return anew(fmt::format("planning again: {}", broken->message));
-  }
-  plan->valid = true;
+  const auto broken = broken_limit(*plan, file);
+  if (broken && !wanted) return anew(fmt::format("planning again: {}", broken->message));
+  if (broken && !choice.unchecked) return *broken;
+  plan->valid = !broken;
   return std::optional<Plan>(std::move(plan).value());
 }
 
@@ -110,8 +112,7 @@ Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool wa
   if (!out) return out;
   const auto hash = config::hash_files(out->loaded.files);
   if (!hash) return hash.error();
-  const bool wanted = !choice.plan.empty();
-  auto plan = plan_from_file(session, wanted ? choice.plan : plan_file_beside(choice.show), *hash, wanted);
+  auto plan = plan_from_file(session, choice, *hash);
   if (!plan) return std::move(plan).error();
   if (*plan) {
     out->planned.plan = *std::move(*plan);
@@ -127,6 +128,12 @@ Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool wa
   }
   if (auto done = plan_now(session, *out, *hash, choice.threads); !done) return std::move(done).error();
   return out;
+}
+
+Result<Plan> plan_alone(const std::string& file) {
+  auto plan = config::load_plan(file);
+  if (plan) plan->valid = !broken_limit(*plan, file);
+  return plan;
 }
 
 std::optional<Error> refusal_of(const planner::Planned& planned) {

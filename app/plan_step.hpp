@@ -8,6 +8,7 @@
 #include "app/session.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
+#include "core/time.hpp"
 #include "planner/plan_show.hpp"
 
 namespace CLI {
@@ -21,6 +22,8 @@ struct PlanChoice {
   std::string show;  ///< the show file
   std::string plan;  ///< a plan file that must be of this show; empty: the one beside the show where it fits
   int threads = 0;   ///< 0: as many as there are processors
+  /// A plan file that the user named may break its limits: it is taken, and marked as not valid.
+  bool unchecked = false;
 
   /// SHOW, --plan and --threads.
   void add_options(CLI::App& command);
@@ -29,8 +32,9 @@ struct PlanChoice {
 /// A show and its plan.
 struct PlannedShow {
   config::LoadedShow loaded;
-  std::optional<Films> films;  ///< absent when the plan came from a file and nobody asked for them
-  planner::Planned planned;    ///< `shortest` is empty when the plan came from a file
+  std::optional<Films> films;        ///< absent when the plan came from a file and nobody asked for them
+  planner::Planned planned;          ///< `shortest` is empty when the plan came from a file
+  std::optional<Duration> planning;  ///< that planning took, decoding apart; absent when the plan came from a file
   [[nodiscard]] const Plan& plan() const { return planned.plan; }
 };
 
@@ -44,6 +48,9 @@ struct PlannedShow {
 
 /// Reads and plans, whatever plan files there are.
 [[nodiscard]] Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice);
+
+/// A plan file on its own, judged: a plan that breaks its limits is marked as not valid.
+[[nodiscard]] Result<Plan> plan_alone(const std::string& file);
 
 /// Nothing for a valid plan; else why it is refused, in one message of a line each.
 [[nodiscard]] std::optional<Error> refusal_of(const planner::Planned& planned);

@@ -2,7 +2,9 @@
 #include "planner/measure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -12,6 +14,8 @@
 #include "planner/judge/approach.hpp"
 #include "planner/judge/drawing.hpp"
 #include "planner/judge/walks.hpp"
+#include "planner/parallel.hpp"
+#include "planner/validate.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -45,25 +49,74 @@ void sum_up(std::span<const FrameJudgement> frames, Measures& out) {
   out.theta_dev_var = squares / out.frames;
 }
 
-/// Distances and speeds of the walks that end in (after, until].
+/// What somebody walked.
+struct Way {
+  double walked_m = 0;
+  double max_speed_m_s = 0;
+  std::uint64_t direction_changes = 0;
+  std::uint64_t arrivals = 0;
+};
+
+/// Nobody calls less than this a change of direction: cos 30 degrees.
+const double kSameDirection = std::sqrt(3.0) / 2;
+
+/// The walks that end in (after, until]; the direction before the first of them is remembered, too.
+Way way_of(const std::vector<judge::Stand>& track, Instant after, Instant until) {
+  Way way;
+  Point direction;  // of the last walk; no length: none yet
+  for (std::size_t k = 1; k < track.size() && track[k].time <= until; ++k) {
+    const Point walk = track[k].at - track[k - 1].at;
+    const double walk_m = length(walk);
+    if (walk_m == 0) continue;
+    const Point before = std::exchange(direction, (1 / walk_m) * walk);
+    if (track[k].time <= after) continue;
+    way.walked_m += walk_m;
+    way.max_speed_m_s = std::max(way.max_speed_m_s, walk_m / to_seconds(track[k].time - track[k - 1].time));
+    ++way.arrivals;
+    const bool walked_before = squared_length(before) > 0;
+    way.direction_changes += walked_before && dot(before, direction) < kSameDirection - 1e-9 ? 1 : 0;
+  }
+  return way;
+}
+
+/// Of distances, ascending. (2 sum(i x_i) / sum(x) - n - 1) / n, i from 1.
+double gini_of(std::span<const double> ascending, double total) {
+  if (total <= 0) return 0;
+  double weighted = 0;
+  for (std::size_t i = 0; i < ascending.size(); ++i) weighted += static_cast<double>(i + 1) * ascending[i];
+  const double people = static_cast<double>(ascending.size());
+  return std::max(0.0, (2 * weighted / total - people - 1) / people);
+}
+
+/// Distances, speeds and turns of the walks that end in (after, until].
 void add_walks(const Walks& walks, Instant after, Instant until, Measures& out) {
+  std::vector<double> walked_m(walks.people());
   for (std::uint32_t i = 0; i < walks.people(); ++i) {
-    const auto& track = walks.track(i);
-    double way_m = 0;
-    for (std::size_t k = 1; k < track.size(); ++k) {
-      if (track[k].time <= after || track[k].time > until) continue;
-      const double walk_m = distance(track[k - 1].at, track[k].at);
-      way_m += walk_m;
-      out.max_speed_m_s = std::max(out.max_speed_m_s, walk_m / to_seconds(track[k].time - track[k - 1].time));
-    }
-    out.total_distance_m += way_m;
-    out.longest_distance_m = std::max(out.longest_distance_m, way_m);
+    const Way way = way_of(walks.track(i), after, until);
+    walked_m[i] = way.walked_m;
+    out.total_distance_m += way.walked_m;
+    out.longest_distance_m = std::max(out.longest_distance_m, way.walked_m);
+    out.max_speed_m_s = std::max(out.max_speed_m_s, way.max_speed_m_s);
+    out.direction_changes += way.direction_changes;
+    out.arrivals += way.arrivals;
+  }
+  if (walked_m.empty()) return;
+  std::sort(walked_m.begin(), walked_m.end());
+  const std::size_t half = walked_m.size() / 2;
+  out.median_distance_m = walked_m.size() % 2 == 1 ? walked_m[half] : (walked_m[half - 1] + walked_m[half]) / 2;
+  out.distance_gini = gini_of(walked_m, out.total_distance_m);
+  const double minutes = to_seconds(until - after) / 60;
+  if (minutes > 0) {
+    out.marks_per_minute = static_cast<double>(out.arrivals) / static_cast<double>(walked_m.size()) / minutes;
   }
 }
 
 void add_clearance(const Plan& plan, const Walks& walks, Instant start, Instant end, Measures& out) {
   const judge::Approaches near = judge::find_approaches(plan, walks, start, end, 0);
   out.min_clearance_m = near.nearest.distance_m;
+  out.closest_a = PerformerIndex(near.nearest.a);
+  out.closest_b = PerformerIndex(near.nearest.b);
+  out.closest_at = near.nearest.at;
   out.too_close = near.too_close;
 }
 
@@ -92,6 +145,9 @@ class Measurer {
       add_walks(walks_, after, until, out.sections[k]);
       if (after == first && until >= last) {
         out.sections[k].min_clearance_m = out.show.min_clearance_m;
+        out.sections[k].closest_a = out.show.closest_a;
+        out.sections[k].closest_b = out.show.closest_b;
+        out.sections[k].closest_at = out.show.closest_at;
         out.sections[k].too_close = out.show.too_close;
       } else {
         add_clearance(plan_, walks_, after, until, out.sections[k]);
@@ -151,6 +207,15 @@ class Measurer {
 
 ShowMeasures measure(const Plan& plan, const std::vector<std::optional<Film>>& films, const Progress& progress) {
   return Measurer(plan, films, progress).run();
+}
+
+std::vector<double> measure_lag(const Plan& plan, const Progress& progress) {
+  std::vector<double> lag_s(plan.transitions.size());
+  for_each_index(lag_s.size(), "lag", progress, [&](std::size_t k) {
+    const TransitionFacts& facts = plan.transitions[k];
+    lag_s[k] = tolerated_lag_s(plan, facts.start, std::max(facts.start, facts.end));
+  });
+  return lag_s;
 }
 
 }  // namespace footlight::planner

@@ -19,10 +19,20 @@ struct Measures {
   std::optional<double> theta_miss;     ///< share of the picture that nobody covers, mean over frames with a picture
   std::optional<double> theta_iou;      ///< 1 - (covered and picture) / (covered or picture), mean over frames
   double min_clearance_m = 0;           ///< infinity for fewer than two people
-  std::uint64_t too_close = 0;          ///< pairs and stretches below their clearance, as Verdict::too_close
+  PerformerIndex closest_a;             ///< who are nearest to each other, and when
+  PerformerIndex closest_b;
+  Instant closest_at;
+  std::uint64_t too_close = 0;  ///< pairs and stretches below their clearance, as Verdict::too_close
   double max_speed_m_s = 0;
   double total_distance_m = 0;    ///< walked by everybody together
   double longest_distance_m = 0;  ///< of one person
+  double median_distance_m = 0;
+  double distance_gini = 0;  ///< Gini coefficient of the people's distances: 0 all alike, towards 1 one walks for all
+  /// Times that somebody goes on in a direction more than 30 degrees off the one before, waiting between or not; of
+  /// everybody together.
+  std::uint64_t direction_changes = 0;
+  std::uint64_t arrivals = 0;   ///< marks on another cell than the mark before: what people must learn
+  double marks_per_minute = 0;  ///< arrivals of one performer, mean over people and time
   int formations = 0;
 };
 
@@ -45,5 +55,10 @@ struct ShowMeasures {
 /// Source: Li, Huang, Liu, Ding 2020, Eq. 8, in the definition of check/theta_dev.py. Thread: reentrant.
 [[nodiscard]] ShowMeasures measure(const Plan& plan, const std::vector<std::optional<Film>>& films,
                                    const Progress& progress = {});
+
+/// Tolerated lag of each transition of a plan, s, at most 2 s, measured anew: a plan from a file may say anything.
+/// @param progress tells the share of transitions as stage "lag"
+/// @return as long as plan.transitions; worthless when stopped. On all cores. Thread: reentrant.
+[[nodiscard]] std::vector<double> measure_lag(const Plan& plan, const Progress& progress = {});
 
 }  // namespace footlight::planner

@@ -228,6 +228,60 @@ TEST_F(StarterShow, APlanThatBreaksItsLimitsNeverReachesAMarker) {
   EXPECT_EQ(again.err, "note: planning again: " + broken);
 }
 
+TEST_F(StarterShow, APlanThatBreaksItsLimitsIsMeasuredAndMarked) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  auto plan = config::load_plan(plan_);
+  ASSERT_TRUE(plan) << plan.error().message;
+  plan->tracks[1] = plan->tracks[0];
+  const std::string broken = folder_ / "broken.plan";
+  ASSERT_TRUE(config::save_plan(*plan, broken));
+  const json alone = json::parse(footlight({"measure", broken, "--json"}).out);
+  EXPECT_EQ(alone["valid"], false);
+  EXPECT_EQ(alone["min_clearance_m"], 0.0);
+  EXPECT_EQ(alone["closest"]["performers"], json({"1", "2"}));
+  EXPECT_GT(alone["too_close"], 0);
+  json with_show = json::parse(footlight({"measure", show_, "--plan", broken, "--json"}).out);
+  EXPECT_EQ(with_show["file"], show_);
+  with_show["file"] = broken;
+  EXPECT_EQ(with_show, alone);
+  const Ran both = footlight({"measure", show_, broken});
+  EXPECT_EQ(both.status, 0);
+  EXPECT_THAT(both.out, HasSubstr("\n" + broken + " (not valid)  "));
+  EXPECT_THAT(both.out, ::testing::Not(HasSubstr(show_ + " (not valid)")));
+}
+
+TEST_F(StarterShow, PlanningTimeIsToldWhereThereWasPlanning) {
+  EXPECT_GT(json::parse(footlight({"measure", show_, "--json"}).out)["planning_s"], 0.0);
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  EXPECT_EQ(json::parse(footlight({"measure", show_, "--json"}).out)["planning_s"], json());
+}
+
+TEST_F(StarterShow, OnePlanForSeveralShowsIsRefused) {
+  const Ran ran = footlight({"measure", show_, show_, "--plan", plan_});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: --plan goes with one show (name plan files beside the shows instead)\n");
+}
+
+TEST_F(StarterShow, APlanOfAFilmIsMeasuredAlikeWithoutItsShowAndSaysWhenTheFilmIsGone) {
+  std::filesystem::copy_file(kVideo, folder_ / "s/film.avi");
+  folder_.write("s/show.yaml",
+                "footlight: 1\ntitle: Film\nstage: {grid: {kind: square, columns: 12, rows: 8, pitch: 1 m}}\n"
+                "performers: {count: 12}\nmusic: {tempo: 100}\nsections:\n"
+                "  - {name: ring, from: {video: film.avi}, start: count 1, duration: 16 counts}\n");
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const json with_show = json::parse(footlight({"measure", show_, "--json"}).out);
+  const json alone = json::parse(footlight({"measure", plan_, "--json"}).out);
+  EXPECT_GT(alone["frames"], 0);
+  for (const char* figure : {"theta_dev", "theta_dev_var", "theta_miss", "theta_iou"}) {
+    EXPECT_EQ(alone[figure], with_show[figure]) << figure;
+  }
+  std::filesystem::remove(folder_ / "s/film.avi");
+  const Ran gone = footlight({"measure", plan_, "--json"});
+  EXPECT_EQ(gone.status, 0);
+  EXPECT_THAT(gone.err, StartsWith("note: the drawing of section ring is not measured: "));
+  EXPECT_EQ(json::parse(gone.out)["theta_dev"], json());
+}
+
 TEST_F(StarterShow, ExportsThreeFiles) {
   const Ran ran = footlight({"export", show_, "--csv", folder_ / "csv/deep", "-q"});
   EXPECT_EQ(ran.status, 0);

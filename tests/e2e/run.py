@@ -59,6 +59,10 @@ class Case(unittest.TestCase):
         self.assertAlmostEqual(judged["max_speed_m_s"], measured["max_speed_m_s"], places=4)
         if judged["min_clearance_m"] < 1.5 * judged["clearance_m"]:
             self.assertAlmostEqual(judged["min_clearance_m"], measured["min_clearance_m"], places=5)
+        lag_s = measured["lag_s"]
+        late = self.judge("check_marks.py", self.path("csv"), "--clearance", "0.5", "--max-speed", "1.4", "--lag", str(lag_s))
+        self.assertEqual(late["too_close_lag"] == 0, measured["lag_tolerated_by"] == measured["transitions"])
+        self.assertAlmostEqual(judged["mean_distance_m"], measured["total_distance_m"] / performers, places=3)
         with open(self.path("csv", "stage.json")) as f:
             stage = json.load(f)
         for section in stage["sections"]:
@@ -88,6 +92,26 @@ class Shows(Case):
     def test_vine_is_planned_and_judged_well(self):
         measured = self.assert_judged_well(os.path.join(ROOT, "shows/vine/show.yaml"), 900)
         self.assertGreaterEqual(measured["min_clearance_m"], 0.5)
+
+    def test_every_mode_is_judged_as_it_measures_itself(self):
+        """One film, planned in each mode: the figures of both judges are those of `measure`, which puts the modes side by side."""
+        film = os.path.join(ROOT, "shows/vine/vine_flower_growing.mp4")
+        shows = []
+        for model in ("flat, cost: euclidean", "flat", "hierarchical", "joint"):
+            show = self.path(f"{len(shows)}.yaml")
+            with open(show, "w") as f:
+                f.write("footlight: 1\ntitle: Mode\nstage:\n  grid: {kind: square, columns: 40, rows: 24, pitch: 1 m}\n"
+                        "  reserve: [A1:F24, AI1:AN24]\n  clearance: 0.5 m\n  max_speed: 1.4 m/s\nperformers: {count: 150}\n"
+                        "music: {tempo: 120}\nsections:\n"
+                        f"  - {{name: film, from: {{video: {film}}}, start: count 1, duration: 80 counts, planner: {{model: {model}}}}}\n")
+            shows.append(show)
+            measured = self.assert_judged_well(show, 150)
+            self.assertEqual(measured["too_close"], 0, model)
+        together = json.loads(footlight("measure", *shows, "--json")[0])["plans"]
+        self.assertEqual([os.path.basename(p["file"]) for p in together], ["0.yaml", "1.yaml", "2.yaml", "3.yaml"])
+        for plan in together:
+            self.assertTrue(plan["valid"])
+            self.assertGreater(plan["planning_s"], 0)
 
     def test_ceremony_is_planned_and_judged_well(self):
         self.assert_judged_well(os.path.join(ROOT, "shows/ceremony/show.yaml"), 3290)

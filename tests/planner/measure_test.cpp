@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/validate.hpp"
 #include "tests/support/plan_builder.hpp"
 
 namespace footlight::planner {
@@ -174,6 +175,91 @@ TEST(Measure, GivesTheWalkBetweenSectionsToTheLaterOne) {
   EXPECT_EQ(found.show.formations, 2);
   EXPECT_EQ(found.sections[0].formations, 0);
   EXPECT_EQ(found.sections[1].formations, 2);
+}
+
+TEST(Measure, NamesTheNearestTwoAndWhen) {
+  const Grid grid = floor4();
+  Plan plan = plan_of(grid, {{mark_at(0, grid, 0, 0), mark_at(2, grid, 0, 0), mark_at(4, grid, 3, 0)},
+                             {mark_at(0, grid, 3, 3), mark_at(4, grid, 3, 3)},
+                             {mark_at(0, grid, 3, 2), mark_at(2, grid, 3, 1), mark_at(4, grid, 3, 1)}});
+  plan.sections = {{"one", kStart, instant_at(2), 1.4, {}, {}, {}},
+                   {"two", instant_at(2), instant_at(4), 1.4, {}, {}, {}}};
+  const ShowMeasures found = measure(plan, {std::nullopt, std::nullopt});
+  EXPECT_EQ(found.sections[0].closest_a, PerformerIndex(1));
+  EXPECT_EQ(found.sections[0].closest_b, PerformerIndex(2));
+  EXPECT_EQ(found.sections[0].closest_at, kStart);
+  EXPECT_EQ(found.sections[1].closest_a, PerformerIndex(0));
+  EXPECT_EQ(found.sections[1].closest_b, PerformerIndex(2));
+  EXPECT_EQ(found.sections[1].closest_at, instant_at(4));
+  EXPECT_EQ(found.show.closest_at, kStart) << "the earlier of two equals";
+}
+
+TEST(Measure, TellsHowUnequalTheWaysAre) {
+  const Grid grid = floor4();
+  // 0, 1, 2 and 3 metres in half a minute.
+  std::vector<std::vector<Mark>> tracks;
+  for (int row = 0; row < 4; ++row) tracks.push_back({mark_at(0, grid, 0, row), mark_at(30, grid, row, row)});
+  Plan plan = plan_of(grid, tracks);
+  plan.sections = {{"all", kStart, instant_at(30), 1.4, {}, {}, {}}};
+  const Measures found = measure(plan, {std::nullopt}).show;
+  EXPECT_DOUBLE_EQ(found.median_distance_m, 1.5);
+  EXPECT_DOUBLE_EQ(found.longest_distance_m, 3);
+  // Mean absolute difference 20 / 16 over twice the mean of 1.5.
+  EXPECT_DOUBLE_EQ(found.distance_gini, 20.0 / 16 / 3);
+  EXPECT_EQ(found.arrivals, 3U);
+  EXPECT_DOUBLE_EQ(found.marks_per_minute, 1.5);
+  plan.tracks = {plan.tracks[0], plan.tracks[1]};
+  plan.performers.resize(2);
+  plan.radius_m.resize(2);
+  EXPECT_DOUBLE_EQ(measure(plan, {std::nullopt}).show.distance_gini, 0.5) << "one of two walks all there is";
+}
+
+TEST(Measure, NobodyWhoStandsStillIsUnequal) {
+  const Measures found = measure(standing_column(0, 1), {}).show;
+  EXPECT_EQ(found.distance_gini, 0.0);
+  EXPECT_EQ(found.median_distance_m, 0.0);
+  EXPECT_EQ(found.marks_per_minute, 0.0);
+  EXPECT_EQ(found.direction_changes, 0U);
+}
+
+TEST(Measure, CountsTurnsOfMoreThanThirtyDegreesAcrossWaits) {
+  const Grid grid = floor4();
+  const auto turns = [&](std::vector<Mark> track) {
+    Plan plan = plan_of(grid, {std::move(track)});
+    return measure(plan, {}).show.direction_changes;
+  };
+  EXPECT_EQ(turns({mark_at(0, grid, 0, 0), mark_at(1, grid, 1, 0), mark_at(2, grid, 3, 0)}), 0U);
+  EXPECT_EQ(turns({mark_at(0, grid, 0, 0), mark_at(1, grid, 1, 0), mark_at(2, grid, 3, 1)}), 0U) << "26.6 degrees";
+  EXPECT_EQ(turns({mark_at(0, grid, 0, 0), mark_at(1, grid, 1, 0), mark_at(2, grid, 2, 1)}), 1U) << "45 degrees";
+  EXPECT_EQ(turns({mark_at(0, grid, 0, 0), mark_at(1, grid, 1, 0), mark_at(2, grid, 1, 0), mark_at(3, grid, 0, 0)}),
+            1U);
+}
+
+TEST(Measure, ATurnAtASectionsStartIsTheLaterSections) {
+  const Grid grid = floor4();
+  Plan plan = plan_of(grid, {{mark_at(0, grid, 0, 0), mark_at(2, grid, 1, 0), mark_at(4, grid, 1, 2)}});
+  plan.sections = {{"one", kStart, instant_at(2), 1.4, {}, {}, {}},
+                   {"two", instant_at(2), instant_at(4), 1.4, {}, {}, {}}};
+  const ShowMeasures found = measure(plan, {std::nullopt, std::nullopt});
+  EXPECT_EQ(found.sections[0].direction_changes, 0U);
+  EXPECT_EQ(found.sections[1].direction_changes, 1U);
+}
+
+TEST(Measure, ToleratedLagIsMeasuredWhateverThePlanSays) {
+  Rng rng(7);
+  Plan plan = tests::random_plan(floor4(), 3, 4, false, rng);
+  for (int k = 0; k < 3; ++k) {
+    TransitionFacts facts;
+    facts.start = instant_at(2 * k);
+    facts.end = instant_at(2 * k + 2);
+    facts.tolerated_lag_s = 1.75;
+    plan.transitions.push_back(facts);
+  }
+  const auto lag_s = measure_lag(plan);
+  ASSERT_EQ(lag_s.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(lag_s[k], tolerated_lag_s(plan, plan.transitions[k].start, plan.transitions[k].end));
+  }
 }
 
 TEST(Measure, TellsItsProgressAndStops) {
