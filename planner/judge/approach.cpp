@@ -16,8 +16,6 @@
 namespace footlight::planner::judge {
 namespace {
 
-constexpr int kMostSteps = 64;
-
 bool earlier(const NearestPair& x, const NearestPair& y) { return std::tie(x.at, x.a, x.b) < std::tie(y.at, y.a, y.b); }
 
 /// The instants at which walks are cut: start, every mark instant between, end.
@@ -57,9 +55,8 @@ std::vector<Slab> slabs_of(const Walks& walks, const std::vector<Instant>& cuts)
 /// What a thread keeps from slab to slab.
 struct Scratch {
   NearPairs near;
-  std::vector<Box> boxes;
+  std::vector<MovingDisc> discs;    // what each person covers in the slab, half of what has to be seen around her
   std::vector<std::size_t> before;  // each person's last stand at the slab's start
-  std::vector<std::size_t> cursor;  // the same at the step's start
   std::vector<Point> from;          // where each person is at the slab's start
   std::vector<Point> to;            // and at its end
   std::vector<char> straight;       // no mark inside of the slab
@@ -72,15 +69,13 @@ class SlabJudge {
 
   Approaches run(double seen_m) {
     place_people();
-    const double widest_m = widest_walk_m();
-    const int steps = std::clamp(static_cast<int>(std::ceil(widest_m / std::max(seen_m, 1e-3))), 1, kMostSteps);
-    s_.cursor = s_.before;
-    Instant step_start = start_;
-    for (int k = 0; k < steps; ++k) {
-      const Instant step_end = k + 1 == steps ? end_ : start_ + (end_ - start_) / steps * (k + 1);
-      judge_step(step_start, step_end, seen_m);
-      step_start = step_end;
+    s_.discs.resize(walks_.people());
+    for (std::uint32_t i = 0; i < walks_.people(); ++i) {
+      s_.discs[i] = disc(i);
+      if (walks_.track(i).empty()) continue;
+      s_.discs[i].radius_m += std::max(seen_m, 1.5 * std::max(plan_.stage.clearance_m, 2 * plan_.radius_m[i])) / 2;
     }
+    for (const auto& [a, b] : s_.near.find(s_.discs)) judge_pair(a, b);
     if (out_.first.size() > keep_) trim();
     std::sort(out_.first.begin(), out_.first.end(), earlier);
     return std::move(out_);
@@ -107,46 +102,31 @@ class SlabJudge {
     }
   }
 
-  [[nodiscard]] double widest_walk_m() const {
-    double widest = 0;
-    for (std::uint32_t i = 0; i < walks_.people(); ++i) {
-      const std::vector<Stand>& track = walks_.track(i);
-      if (track.empty()) continue;
-      Point at = s_.from[i];
-      double walked = 0;
-      for (std::size_t k = s_.before[i] + 1; k < track.size() && track[k].time < end_; ++k) {
-        walked += distance(at, track[k].at);
-        at = track[k].at;
-      }
-      widest = std::max(widest, walked + distance(at, s_.to[i]));
+  /// A point that goes along with who walks straight; who has marks inside of the slab is in a disc that stands still.
+  [[nodiscard]] MovingDisc disc(std::uint32_t person) const {
+    const std::vector<Stand>& track = walks_.track(person);
+    if (track.empty()) return {{}, {}, -1};
+    if (s_.straight[person] != 0) return {s_.from[person], s_.to[person], 0};
+    Box box;
+    box.add(s_.from[person]);
+    box.add(s_.to[person]);
+    for (std::size_t k = s_.before[person]; k < track.size() && track[k].time < end_; ++k) {
+      if (track[k].time > start_) box.add(track[k].at);
     }
-    return widest;
+    const Point low{box.x0, box.y0};
+    const Point middle = low + 0.5 * (Point{box.x1, box.y1} - low);
+    return {middle, middle, distance(low, middle)};
   }
 
-  void judge_step(Instant step_start, Instant step_end, double seen_m) {
-    s_.boxes.assign(walks_.people(), Box{});
-    for (std::uint32_t i = 0; i < walks_.people(); ++i) {
-      const std::vector<Stand>& track = walks_.track(i);
-      if (track.empty()) continue;
-      Box& box = s_.boxes[i];
-      std::size_t& at = s_.cursor[i];
-      box.add(walks_.position(i, at, step_start));
-      while (at + 1 < track.size() && track[at + 1].time <= step_end) box.add(track[++at].at);
-      box.add(walks_.position(i, at, step_end));
-      box.grow(std::max(seen_m, 1.5 * std::max(plan_.stage.clearance_m, 2 * plan_.radius_m[i])) / 2);
-    }
-    for (const auto& [a, b] : s_.near.find(s_.boxes)) judge_pair(a, b, step_start, step_end);
-  }
-
-  void judge_pair(std::uint32_t a, std::uint32_t b, Instant step_start, Instant step_end) {
+  void judge_pair(std::uint32_t a, std::uint32_t b) {
     if (s_.straight[a] != 0 && s_.straight[b] != 0) {
-      judge_piece(a, b, {start_, end_, s_.from[a] - s_.from[b], s_.to[a] - s_.to[b]}, step_start, step_end);
+      judge_piece(a, b, {start_, end_, s_.from[a] - s_.from[b], s_.to[a] - s_.to[b]});
       return;
     }
     std::size_t before_a = s_.before[a];
     std::size_t before_b = s_.before[b];
     Piece piece{start_, start_, {}, s_.from[a] - s_.from[b]};
-    while (piece.end < end_) {
+    do {
       const Instant next = std::min({end_, next_mark(a, before_a, piece.end), next_mark(b, before_b, piece.end)});
       piece.start = piece.end;
       piece.d0 = piece.d1;
@@ -154,8 +134,8 @@ class SlabJudge {
       before_a = forward(a, before_a, next);
       before_b = forward(b, before_b, next);
       piece.d1 = walks_.position(a, before_a, next) - walks_.position(b, before_b, next);
-      if (piece.end >= step_start && piece.start <= step_end) judge_piece(a, b, piece, step_start, step_end);
-    }
+      judge_piece(a, b, piece);
+    } while (piece.end < end_);
   }
 
   [[nodiscard]] Instant next_mark(std::uint32_t person, std::size_t before, Instant now) const {
@@ -185,7 +165,7 @@ class SlabJudge {
     return std::clamp(at, start, end);
   }
 
-  void judge_piece(std::uint32_t a, std::uint32_t b, const Piece& piece, Instant step_start, Instant step_end) {
+  void judge_piece(std::uint32_t a, std::uint32_t b, const Piece& piece) {
     const Nearest nearest = nearest_to_origin(piece.d0, piece.d1);
     const double best = out_.nearest.distance_m;
     if (nearest.squared_m2 <= best * best) {
@@ -194,14 +174,11 @@ class SlabJudge {
     }
     const double limit = least_distance_m(plan_, a, b) - kClearanceTolerance_m;
     if (limit <= 0 || nearest.squared_m2 >= limit * limit) return;
-    count_too_close(a, b, piece, nearest, limit, step_start, step_end);
+    count_too_close(a, b, piece, nearest, limit);
   }
 
-  /// The pair is seen in several steps; the one with the closest approach counts it, on a border the later one.
-  void count_too_close(std::uint32_t a, std::uint32_t b, const Piece& piece, const Nearest& nearest, double limit_m,
-                       Instant step_start, Instant step_end) {
+  void count_too_close(std::uint32_t a, std::uint32_t b, const Piece& piece, const Nearest& nearest, double limit_m) {
     const Instant at = instant_in(piece.start, piece.end, nearest.share);
-    if (at < step_start || at > step_end || (at == step_end && step_end != end_)) return;
     out_.too_close += stretches_too_close(piece, at, limit_m);
     out_.first.push_back({std::sqrt(nearest.squared_m2), at, a, b});
     if (out_.first.size() >= 4 * keep_ + 64) trim();

@@ -37,9 +37,8 @@ struct Approaches {
 /// Closest approaches in [start, end], in closed form. Stretches of time are judged in parallel; the result does not
 /// depend on how.
 ///
-/// Each stretch is cut into steps in which nobody goes far. In each step the boxes that people sweep, made larger by
-/// what has to be seen, are paired by a uniform grid; a pair is then measured over its whole stretch.
-/// Complexity: O(marks log marks + near pairs). Thread: reentrant.
+/// In each stretch the pairs that come within sight are found first, by a tree; a pair is then measured over the whole
+/// stretch. Complexity: O(marks log marks + near pairs). Thread: reentrant.
 [[nodiscard]] Approaches find_approaches(const Plan& plan, const Walks& walks, Instant start, Instant end,
                                          std::size_t keep);
 

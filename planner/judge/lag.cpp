@@ -31,18 +31,14 @@ class LagJudge {
 
   /// @return s
   double run() {
-    const double cap_mps = *std::max_element(fastest_mps_.begin(), fastest_mps_.end());
-    const double view_m = std::max({plan_.stage.clearance_m, plan_.stage.grid.pitch_m(), cap_mps * cap_s_});
-    const double way_m = cap_mps * to_seconds(end_ - start_);
-    const int windows = std::clamp(static_cast<int>(std::ceil(way_m / view_m)), 1, 64);
     judge::NearPairs near;
-    std::vector<Box> boxes(walks_.people());
-    for (int k = 0; k < windows && steps_ > 0; ++k) {
-      const Instant from = start_ + (end_ - start_) / windows * k;
-      const Instant to = k + 1 == windows ? end_ : start_ + (end_ - start_) / windows * (k + 1);
-      const Instant late = std::min(until_, to + seconds(lag_of(steps_)) + Duration(1));
-      for (std::uint32_t i = 0; i < walks_.people(); ++i) boxes[i] = swept(i, from, late);
-      for (const auto& [a, b] : near.find(boxes)) judge_pair(a, b);
+    std::vector<judge::MovingDisc> discs(walks_.people());
+    // Whoever comes too near with a small lateness is found with small discs.
+    for (const std::int64_t most : {kSteps / 16, kSteps / 4, kSteps}) {
+      steps_ = most;
+      for (std::uint32_t i = 0; i < walks_.people(); ++i) discs[i] = disc(i, lag_of(most));
+      for (const auto& [a, b] : near.find(discs)) judge_pair(a, b);
+      if (steps_ < most) break;
     }
     return lag_of(steps_);
   }
@@ -81,17 +77,24 @@ class LagJudge {
     } while (now < until_);
   }
 
-  [[nodiscard]] Box swept(std::uint32_t person, Instant from, Instant to) const {
+  /// Where somebody is in [start_, end_], and whoever may come too near by lateness up to `lag_s`: who is late is at
+  /// most that time times the speed away from where he would be.
+  [[nodiscard]] judge::MovingDisc disc(std::uint32_t person, double lag_s) const {
+    const auto& legs = legs_[person];
+    if (legs.empty()) return {{}, {}, -1};
+    const double end_s = to_seconds(end_ - start_);
+    const double keep_m = std::max(plan_.stage.clearance_m, 2 * plan_.radius_m[person]) / 2;
+    const double radius_m = keep_m + lag_s * fastest_mps_[person];
+    if (legs.front().t1_s >= end_s) return {legs.front().from, legs.front().at(end_s), radius_m};
     Box box;
-    const double from_s = to_seconds(from - start_);
-    const double to_s = to_seconds(to - start_);
-    for (const Leg& leg : legs_[person]) {
-      if (leg.t1_s < from_s || leg.t0_s > to_s) continue;
-      box.add(leg.at(std::max(from_s, leg.t0_s)));
-      box.add(leg.at(std::min(to_s, leg.t1_s)));
+    for (const Leg& leg : legs) {
+      if (leg.t0_s > end_s) break;
+      box.add(leg.from);
+      box.add(leg.at(std::min(end_s, leg.t1_s)));
     }
-    box.grow(std::max(plan_.stage.clearance_m, 2 * plan_.radius_m[person]) / 2);
-    return box;
+    const Point low{box.x0, box.y0};
+    const Point middle = low + 0.5 * (Point{box.x1, box.y1} - low);
+    return {middle, middle, radius_m + distance(low, middle)};
   }
 
   void judge_pair(std::uint32_t a, std::uint32_t b) {

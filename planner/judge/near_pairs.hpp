@@ -6,34 +6,53 @@
 #include <utility>
 #include <vector>
 
-#include "planner/judge/geometry.hpp"
+#include "core/grid.hpp"
 
 namespace footlight::planner::judge {
 
-/// Finds the overlapping pairs among many boxes with a uniform grid. Keeps its memory from call to call.
+/// A disc that moves straight and evenly from one place to another; a negative radius: nobody.
+struct MovingDisc {
+  Point start;
+  Point end;
+  double radius_m = 0;
+};
+
+/// Finds the pairs that touch among many discs that move at the same time. A binary tree, split at the median of the
+/// coordinate (of the starts or of the ends) that is most spread: two of its parts are looked into only where the boxes
+/// around their starts and ends, moved along, overlap at one moment. Keeps its memory from call to call.
 class NearPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-  /// @return every pair (i, j), i < j, of overlapping boxes, once; empty boxes overlap nothing. Valid until the next
-  /// call. Complexity: O(boxes + overlapping pairs) for boxes of like size. Deterministic.
-  std::span<const Pair> find(std::span<const Box> boxes);
+  /// @return every pair (i, j), i < j, of discs that touch or overlap at one moment, once, and perhaps some that just
+  /// do not (by a millionth of a metre). Valid until the next call. O(n log n + pairs) for discs of like radius.
+  /// Deterministic, in no particular order.
+  std::span<const Pair> find(std::span<const MovingDisc> discs);
 
  private:
-  struct Range {
-    int x0, y0, x1, y1;  ///< tiles, both ends included; x1 < x0: the box is empty
+  /// Four columns: start x, y, end x, y.
+  static constexpr int kSides = 4;
+  struct Part {
+    double low[kSides];
+    double high[kSides];
+    double radius_m;  ///< the largest in it
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::uint32_t second;  ///< the first half follows directly; 0: not divided
   };
-  void lay_tiles(std::span<const Box> boxes);
-  void fill_tiles();
+  void divide(std::uint32_t begin, std::uint32_t end);
+  void within(std::uint32_t part);
+  void between(std::uint32_t one, std::uint32_t other);
+  void members(const Part& one, const Part& other);
 
-  double left_m_ = 0;
-  double bottom_m_ = 0;
-  double tiles_per_m_ = 1;
-  int columns_ = 1;
-  int rows_ = 1;
-  std::vector<Range> ranges_;
-  std::vector<std::uint32_t> first_;    // of each tile in members_, one more at the end
-  std::vector<std::uint32_t> members_;  // boxes, tile by tile
+  struct Member {
+    double side[kSides];
+    double radius_m;
+    std::uint32_t disc;
+  };
+  std::vector<Member> members_;
+  std::vector<double> column_[kSides + 1];  ///< of the members' sides and radii
+  std::vector<Part> parts_;
   std::vector<Pair> pairs_;
 };
 
