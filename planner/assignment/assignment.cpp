@@ -102,15 +102,19 @@ Common find_common(std::span<const Point> sources, std::span<const Point> target
 class Potential {
  public:
   Potential(std::span<const Point> targets, std::span<const double> values)
-      : order_(kd_order(targets)), targets_(targets), values_(values), tree_(make_tree()) {}
+      : order_(kd_order(targets)),
+        targets_(targets),
+        values_(values),
+        tree_(make_tree()),
+        finds_(std::make_unique<PriceTree::Finds>(*tree_)) {}
 
   double operator()(Point z) {
     const Point at = z - zero_;
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     // No margin: what rounding leaves undecided is decided below.
-    tree_->collect({static_cast<float>(at.x), static_cast<float>(at.y), kInfinity, 0, kInfinity}, hits_);
+    tree_->collect({static_cast<float>(at.x), static_cast<float>(at.y), kInfinity, 0, kInfinity}, *finds_);
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& hit : hits_) {
+    for (const auto& hit : finds_->hits()) {
       const std::uint32_t target = order_[hit.target];
       least = std::min(least, distance(z, targets_[target]) - values_[target]);
     }
@@ -138,7 +142,7 @@ class Potential {
   std::span<const double> values_;
   Point zero_;
   std::unique_ptr<PriceTree> tree_;
-  std::vector<PriceTree::Hit> hits_;
+  std::unique_ptr<PriceTree::Finds> finds_;
 };
 
 /// By the triangle inequality an exchange that lets everybody stay who stands on a target never costs distance.

@@ -7,7 +7,8 @@
 namespace footlight::planner::assignment {
 namespace {
 
-constexpr std::size_t kLeaf = 16;
+constexpr std::size_t kFan = 16;
+constexpr std::size_t kFour = 4;
 
 struct Item {
   Point at;
@@ -15,10 +16,11 @@ struct Item {
 };
 
 void split(std::span<Item> items) {
-  if (items.size() <= kLeaf) return;
-  std::size_t unit = kLeaf;
-  while (unit * kLeaf < items.size()) unit *= kLeaf;
-  if (unit >= items.size()) unit = kLeaf;
+  if (items.size() <= kFour) return;
+  std::size_t unit = kFour;
+  if (items.size() > kFan) {
+    for (unit = kFan; unit * kFan < items.size();) unit *= kFan;
+  }
   const std::size_t units = (items.size() + unit - 1) / unit;
   const std::size_t half = units / 2 * unit;
   Point low = items[0].at;

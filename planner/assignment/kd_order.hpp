@@ -10,7 +10,7 @@
 namespace footlight::planner::assignment {
 
 /// An order of points in which each aligned run of 16, 256, 4096, ... points is one box of a k-d tree (Bentley 1975),
-/// so that a tree with 16 children a node needs no pointers, and every fourth point is an even sample of all of them.
+/// so that a tree with 16 children a node needs no pointers, and so is each aligned run of four.
 /// Deterministic for distinct points. O(N log N)
 [[nodiscard]] std::vector<std::uint32_t> kd_order(std::span<const Point> points);
 

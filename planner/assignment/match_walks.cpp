@@ -2,7 +2,7 @@
 #include "planner/assignment/match_walks.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/check.hpp"
@@ -15,7 +15,7 @@ namespace footlight::planner::assignment {
 namespace {
 
 constexpr std::uint32_t kDenseSize = 64;
-constexpr std::size_t kMostCandidates = 48;
+constexpr std::uint32_t kMostCandidates = 48;
 constexpr std::uint64_t kMostBids = 60;  ///< a source, in one phase of an auction
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -35,7 +35,7 @@ Matching match_all_pairs(const Walks& walks) {
 class PricedTargets {
  public:
   explicit PricedTargets(const Walks& walks)
-      : walks_(walks), tree_(walks.targets().search_x, walks.targets().search_y, walks.metric()) {}
+      : walks_(walks), tree_(walks.targets().search_x, walks.targets().search_y, walks.metric()), finds_(tree_) {}
 
   void fit(std::span<const Value> prices, std::span<const std::uint32_t> without = {}) {
     shown_.resize(prices.size());
@@ -58,35 +58,29 @@ class PricedTargets {
   }
 
   /// Candidates within `margin` of the best of a source, at most kMostCandidates and those the best.
-  std::span<const PriceTree::Hit> best(std::uint32_t source, Value margin, std::uint32_t guess = kNobody) {
+  std::span<const Hit> best(std::uint32_t source, Value margin, std::uint32_t guess = kNobody) {
     const float x = walks_.sources().search_x[source];
     const float y = walks_.sources().search_y[source];
     const float bound = guess == kNobody ? kInfinity : tree_.value(x, y, guess) + to_search(margin) + tree_.rounding();
-    tree_.collect({x, y, bound, to_search(margin), walks_.reach()}, hits_);
-    if (hits_.size() > kMostCandidates) {
-      std::ranges::nth_element(hits_, hits_.begin() + kMostCandidates, [](const auto& a, const auto& b) {
-        return a.value < b.value || (a.value == b.value && a.target < b.target);
-      });
-      hits_.resize(kMostCandidates);
-    }
-    return hits_;
+    tree_.collect({x, y, bound, to_search(margin), walks_.reach(), kMostCandidates}, finds_);
+    return finds_.hits();
   }
 
   /// All targets of less than `value`, and some that are a little above.
-  std::span<const PriceTree::Hit> below(std::uint32_t source, Value value) {
+  std::span<const Hit> below(std::uint32_t source, Value value) {
     const float bound = to_search(value - base_) - to_search(1) / 2 + tree_.rounding();
     tree_.collect(
         {walks_.sources().search_x[source], walks_.sources().search_y[source], bound, kInfinity, walks_.reach()},
-        hits_);
-    return hits_;
+        finds_);
+    return finds_.hits();
   }
 
   /// All targets that are not too far.
-  std::span<const PriceTree::Hit> within_reach(std::uint32_t source) {
+  std::span<const Hit> within_reach(std::uint32_t source) {
     tree_.collect(
         {walks_.sources().search_x[source], walks_.sources().search_y[source], kInfinity, kInfinity, walks_.reach()},
-        hits_);
-    return hits_;
+        finds_);
+    return finds_.hits();
   }
 
   [[nodiscard]] float to_search(Value value) const {
@@ -98,7 +92,7 @@ class PricedTargets {
   PriceTree tree_;
   std::vector<float> shown_;
   Value base_ = 0;
-  std::vector<PriceTree::Hit> hits_;
+  PriceTree::Finds finds_;
 };
 
 ArcRows candidates(const Walks& walks, PricedTargets& targets, const Matching& matching, Value margin) {
@@ -117,14 +111,20 @@ ArcRows candidates(const Walks& walks, PricedTargets& targets, const Matching& m
   return rows;
 }
 
-/// Prices of a sample of the targets, carried over to all: what its own source would pay for the neighbour instead.
+/// Prices of fours of targets, carried over to each of the four: what the matched four would pay for it.
 std::vector<Value> extend(const Walks& walks, const Walks& coarse, const Matching& sample) {
+  const auto walk = [&](std::uint32_t four, std::uint32_t target) {
+    const double dx = coarse.sources().search_x[four] - walks.targets().search_x[target];
+    const double dy = coarse.sources().search_y[four] - walks.targets().search_y[target];
+    const double squared = dx * dx + dy * dy;
+    return nearest_value((walks.metric() == WalkCost::squared ? squared : std::sqrt(squared)) * walks.scale());
+  };
   std::vector<Value> prices(walks.size());
   for (std::uint32_t s = 0; s < walks.size(); ++s) {
     const std::uint32_t near = std::min(s / 4, coarse.size() - 1);
     const std::uint32_t source = sample.source_of[near];
     prices[s] = sample.price[near];
-    if (source != kNobody) prices[s] += coarse.cost(source, near) - walks.cost(source * 4, s);
+    if (source != kNobody) prices[s] += coarse.cost(source, near) - walk(source, s);
   }
   return prices;
 }
@@ -132,15 +132,15 @@ std::vector<Value> extend(const Walks& walks, const Walks& coarse, const Matchin
 /// Steps and margins in units of Walks::spacing, found by trial on formations of performers. Distances are nearly
 /// linear along a ray, so that far more targets are nearly as good as the best, and finer steps pay.
 struct Tuning {
-  std::array<double, 2> sample_steps;  ///< of the auctions of a sample
-  std::vector<double> steps;           ///< of the auctions of all
-  float margin;                        ///< of the short lists there
-  double arc_margin;                   ///< of the arcs for the exact finish
+  std::vector<double> sample_steps;  ///< of the auctions of fours
+  std::vector<double> steps;         ///< of the auctions of all
+  float margin;                      ///< of the short lists there
+  double arc_margin;                 ///< of the arcs for the exact finish
 };
 
 const Tuning& tuning(WalkCost metric) {
-  static const Tuning squared{{4, 0.5}, {2, 1}, 8, 4};
-  static const Tuning euclidean{{0.5, 0.05}, {0.5, 0.125, 0.032, 0.008, 0.002}, 0.12F, 0.02};
+  static const Tuning squared{{4, 1, 0.25}, {1}, 8, 4};
+  static const Tuning euclidean{{0.5, 0.1, 0.02}, {0.03, 0.004}, 0.12F, 0.02};
   return metric == WalkCost::squared ? squared : euclidean;
 }
 
@@ -155,10 +155,10 @@ Matching auction(const Walks& walks, PricedTargets& targets, std::span<const dou
   return {auction.target_of(), auction.source_of(), targets.prices(), {}};
 }
 
-/// Auction prices of ever finer samples; the finest is left to the caller.
+/// Auction prices of fours of fours; the finest auction is left to the caller.
 Matching sample_match(const Walks& walks) {
   if (walks.size() <= kDenseSize) return match_all_pairs(walks);
-  const Walks coarse = walks.every_fourth();
+  const Walks coarse = walks.fours();
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
   return auction(walks, targets, tuning(walks.metric()).sample_steps);
@@ -255,7 +255,7 @@ std::optional<Matching> match_walks(const Walks& walks) {
     if (std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) return std::nullopt;
     return matching;
   }
-  const Walks coarse = walks.every_fourth();
+  const Walks coarse = walks.fours();
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
   Matching matching = auction(walks, targets, tuning(walks.metric()).steps);

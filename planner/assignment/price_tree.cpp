@@ -2,52 +2,14 @@
 #include "planner/assignment/price_tree.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
+#include "core/check.hpp"
 
 namespace footlight::planner::assignment {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kFan = PriceTree::kFan;
-using Fan = std::array<float, kFan>;
-
-/// Four floats in one register of any machine; a fan is four of them. Wider registers were measured and did not help.
-using Quad [[gnu::vector_size(16)]] = float;
-
-Quad load(const float* from) {
-  Quad quad;
-  std::memcpy(&quad, from, sizeof quad);
-  return quad;
-}
-void store(Quad quad, float* to) { std::memcpy(to, &quad, sizeof quad); }
-Quad all(float value) { return Quad{value, value, value, value}; }
-Quad least_of(Quad a, Quad b) { return a < b ? a : b; }
-Quad most_of(Quad a, Quad b) { return a > b ? a : b; }
-Quad absolute(Quad a) { return most_of(a, -a); }
-Quad root(Quad a) {
-#if defined(__SSE2__)
-  return _mm_sqrt_ps(a);
-#else
-  return Quad{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
-#endif
-}
-/// Bit k: a[k] < limit[k].
-std::uint32_t less(Quad a, Quad limit) {
-#if defined(__SSE2__)
-  return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmplt_ps(a, limit)));
-#else
-  std::uint32_t bits = 0;
-  for (std::uint32_t k = 0; k < 4; ++k) bits |= (a[k] < limit[k] ? 1U : 0U) << k;
-  return bits;
-#endif
-}
 
 std::size_t padded(std::size_t count) { return (count + kFan - 1) / kFan * kFan; }
 
@@ -85,6 +47,20 @@ PriceTree::PriceTree(std::span<const float> x, std::span<const float> y, WalkCos
       level.low_y[node] = first ? ly : std::min(level.low_y[node], ly);
       level.high_y[node] = first ? hy : std::max(level.high_y[node], hy);
     }
+  }
+  make_view();
+}
+
+void PriceTree::make_view() {
+  FL_CHECK(levels_.size() <= TreeView::kMostLevels);
+  view_.x = x_.data();
+  view_.y = y_.data();
+  view_.price = price_.data();
+  view_.levels = static_cast<std::uint32_t>(levels_.size());
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    const Level& level = levels_[k];
+    view_.level[k] = {level.low_x.data(),   level.high_x.data(),  level.low_y.data(),   level.high_y.data(),
+                      level.slope_x.data(), level.slope_y.data(), level.residual.data()};
   }
 }
 
@@ -188,107 +164,6 @@ void PriceTree::fit_node(std::size_t level, std::uint32_t node) {
   upper.residual[node] = residual - kRounding * extent_ * (std::abs(slope_x) + std::abs(slope_y));
 }
 
-/// One search: a source, and what it still looks for.
-template <WalkCost kMetric, bool kLimited>
-struct PriceTree::Search {
-  const PriceTree& tree;
-  float x, y;
-  float bound;
-  float margin;
-  float reach_squared;
-  std::vector<Hit>& hits;
-  std::size_t found = 0;
-
-  /// Lower bounds of walk + price for sixteen siblings. Bit k is set when the k-th is below the bound.
-  std::uint32_t bounds(const Level& level, std::size_t begin, Fan& out) const {
-    std::uint32_t open = 0;
-    for (std::size_t k = 0; k < kFan; k += 4) {
-      const Quad low_x = load(&level.low_x[begin + k]);
-      const Quad low_y = load(&level.low_y[begin + k]);
-      const Quad high_x = load(&level.high_x[begin + k]);
-      const Quad high_y = load(&level.high_y[begin + k]);
-      const Quad slope_x = load(&level.slope_x[begin + k]);
-      const Quad slope_y = load(&level.slope_y[begin + k]);
-      Quad value = load(&level.residual[begin + k]);
-      if (kMetric == WalkCost::squared) {
-        // min over the box of |z - a|^2 + g.z, axis by axis: the least is at a - g/2, or at the nearest side.
-        const Quad zx = least_of(most_of(x - 0.5F * slope_x, low_x), high_x);
-        const Quad zy = least_of(most_of(y - 0.5F * slope_y, low_y), high_y);
-        value += (zx - x) * (zx - x) + slope_x * zx + (zy - y) * (zy - y) + slope_y * zy;
-      } else {
-        // |z - a| >= u.(z - a) for every |u| <= 1; u points to the middle of the box.
-        const Quad half_x = 0.5F * (high_x - low_x);
-        const Quad half_y = 0.5F * (high_y - low_y);
-        const Quad dx = low_x + half_x - x;
-        const Quad dy = low_y + half_y - y;
-        const Quad far = root(dx * dx + dy * dy);
-        const Quad inverse = 1.0F / (far + 1e-20F);
-        value += far + slope_x * (x + dx) + slope_y * (y + dy) - absolute(dx * inverse + slope_x) * half_x -
-                 absolute(dy * inverse + slope_y) * half_y;
-      }
-      std::uint32_t bits = less(value, all(bound));
-      if (kLimited) {
-        const Quad dx = most_of(most_of(low_x - x, x - high_x), all(0));
-        const Quad dy = most_of(most_of(low_y - y, y - high_y), all(0));
-        bits &= less(dx * dx + dy * dy, all(reach_squared));
-      }
-      store(value, &out[k]);
-      open |= bits << k;
-    }
-    return open;
-  }
-
-  void open_leaf(std::size_t begin) {
-    Fan value;
-    Quad least = all(kInfinity);
-    for (std::size_t k = 0; k < kFan; k += 4) {
-      const Quad dx = load(&tree.x_[begin + k]) - x;
-      const Quad dy = load(&tree.y_[begin + k]) - y;
-      const Quad squared = dx * dx + dy * dy;
-      Quad sum = (kMetric == WalkCost::squared ? squared : root(squared)) + load(&tree.price_[begin + k]);
-      if (kLimited) sum = squared < all(reach_squared) ? sum : all(kInfinity);
-      least = least_of(least, sum);
-      store(sum, &value[k]);
-    }
-    bound = std::min(bound, std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) + margin);
-    if (hits.size() < found + kFan) hits.resize(2 * found + kFan);
-    for (std::size_t quad = 0; quad < kFan; quad += 4) {
-      for (std::uint32_t which = less(load(&value[quad]), all(bound)); which != 0; which &= which - 1) {
-        const std::size_t k = quad + static_cast<std::size_t>(std::countr_zero(which));
-        hits[found++] = {value[k], static_cast<std::uint32_t>(begin + k)};
-      }
-    }
-  }
-
-  void run() {
-    struct Open {
-      float bound;
-      std::uint32_t level;  ///< of the children
-      std::uint32_t node;
-    };
-    std::array<Open, kFan * kMostLevels> stack;  // in any order: the bound is good from the start
-    std::size_t open = 0;
-    stack[open++] = {-kInfinity, static_cast<std::uint32_t>(tree.levels_.size()), 0};
-    while (open > 0) {
-      const Open now = stack[--open];
-      if (!(now.bound < bound)) continue;
-      const std::size_t begin = static_cast<std::size_t>(now.node) * kFan;
-      if (now.level == 0) {
-        open_leaf(begin);
-        continue;
-      }
-      Fan value;
-      const std::uint32_t opened = bounds(tree.levels_[now.level - 1], begin, value);
-      for (std::uint32_t which = opened; which != 0; which &= which - 1) {
-        const auto k = static_cast<std::uint32_t>(std::countr_zero(which));
-        stack[open++] = {value[k], now.level - 1, static_cast<std::uint32_t>(begin) + k};
-      }
-    }
-  }
-
-  static constexpr std::size_t kMostLevels = 8;
-};
-
 float PriceTree::value(float x, float y, std::uint32_t target) const {
   const float dx = x_[target] - x;
   const float dy = y_[target] - y;
@@ -296,28 +171,44 @@ float PriceTree::value(float x, float y, std::uint32_t target) const {
   return (metric_ == WalkCost::squared ? squared : std::sqrt(squared)) + price_[target];
 }
 
-template <WalkCost kMetric, bool kLimited>
-float PriceTree::search(const Query& query, std::vector<Hit>& hits) const {
-  const float wide = query.reach * (1 + 1e-5F) + 1e-5F * extent_;
-  Search<kMetric, kLimited> search{*this,       query.x, query.y, query.bound, std::max(query.margin, rounding()),
-                                   wide * wide, hits};
-  search.run();
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < search.found; ++k) {
-    const Hit hit = hits[k];
-    hits[kept] = hit;
-    kept += hit.value < search.bound ? 1U : 0U;
-  }
-  hits.resize(kept);
-  return search.bound;
+/// @return the least value of those that are not kept
+float PriceTree::keep_cheapest(SearchState& state, std::uint32_t most) {
+  std::nth_element(state.hits, state.hits + most, state.hits + state.found, [](const Hit& a, const Hit& b) {
+    return a.value < b.value || (a.value == b.value && a.target < b.target);
+  });
+  state.found = most;
+  return state.hits[most].value;
 }
 
-float PriceTree::collect(const Query& query, std::vector<Hit>& hits) const {
+float PriceTree::collect(const Query& query, Finds& finds) const {
+  const float wide = query.reach * (1 + 1e-5F) + 1e-5F * extent_;
   const bool limited = query.reach < kInfinity;
-  if (metric_ == WalkCost::squared) {
-    return limited ? search<WalkCost::squared, true>(query, hits) : search<WalkCost::squared, false>(query, hits);
+  const auto kernel = kernels().search[metric_ == WalkCost::euclidean ? 1 : 0][limited ? 1 : 0];
+  SearchState state;
+  state.x = query.x;
+  state.y = query.y;
+  state.bound = query.bound;
+  state.margin = std::max(query.margin, rounding());
+  state.reach_squared = wide * wide;
+  // Sorting out what is too much every now and then keeps the bound low, and costs little.
+  state.pause_at = query.most < UINT32_MAX / 2 ? 2 * query.most + kFan : UINT32_MAX;
+  state.hits = finds.room_.get();
+  state.stack[state.open++] = {-kInfinity, view_.levels, 0};
+  while (true) {
+    kernel(view_, state);
+    if (state.open == 0) break;
+    state.bound = std::min(state.bound, keep_cheapest(state, query.most));
   }
-  return limited ? search<WalkCost::euclidean, true>(query, hits) : search<WalkCost::euclidean, false>(query, hits);
+  if (state.found > query.most) state.bound = std::min(state.bound, keep_cheapest(state, query.most));
+  // Not only what is below the bound: where more than `most` are equally good, those that were kept lie on it.
+  std::size_t kept = 0;
+  for (std::uint32_t k = 0; k < state.found; ++k) {
+    const Hit hit = state.hits[k];
+    state.hits[kept] = hit;
+    kept += hit.value <= state.bound ? 1U : 0U;
+  }
+  finds.count_ = kept;
+  return state.bound;
 }
 
 }  // namespace footlight::planner::assignment

@@ -11,29 +11,34 @@ namespace footlight::planner::assignment {
 namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kCeiling = 8;
+/// Margins by which all that a source has on its list may be beyond its horizon before it asks again. Prices around it
+/// rise together, so that there is still little else to be had; what is missed, the exact method finds.
+constexpr float kSlack = 1;
 }  // namespace
 
 WalkAuction::WalkAuction(const Walks& walks, PriceTree& tree, float margin)
     : walks_(walks),
       tree_(tree),
       margin_(margin),
-      listed_target_(static_cast<std::size_t>(walks.size()) * kListed),
-      listed_walk_(static_cast<std::size_t>(walks.size()) * kListed),
+      look_(kernels().look),
+      lists_(std::make_unique_for_overwrite<List[]>(walks.size())),
       listed_(walks.size(), 0),
-      horizon_(walks.size(), -kInfinity) {}
+      horizon_(walks.size(), -kInfinity),
+      finds_(tree) {}
 
 bool WalkAuction::hold(float step, std::uint64_t most_bids) {
   target_of_.assign(walks_.size(), kNobody);
   source_of_.assign(walks_.size(), kNobody);
   std::uint64_t bids = 0;
   bool sold_out = true;
+  const float slack = kSlack * margin_;
   // Prices that rise far above all walks tell of more sources than targets within reach; that is no auction's business.
   const float ceiling = kCeiling * tree_.magnitude();
   for (std::uint32_t first = 0; first < walks_.size(); ++first) {
     for (std::uint32_t source = first; source != kNobody;) {
       if (++bids > most_bids) return false;
       Offer offer = look(source);
-      if (offer.best > horizon_[source]) {
+      if (offer.best > horizon_[source] + slack) {
         refill(source, offer.best);
         offer = look(source);
         if (!(offer.best < ceiling)) {
@@ -54,38 +59,23 @@ bool WalkAuction::hold(float step, std::uint64_t most_bids) {
   return sold_out;
 }
 
-WalkAuction::Offer WalkAuction::look(std::uint32_t source) const {
-  const std::size_t begin = static_cast<std::size_t>(source) * kListed;
-  Offer offer{kInfinity, kInfinity, 0};
-  for (std::size_t e = begin; e < begin + listed_[source]; ++e) {
-    const float value = listed_walk_[e] + tree_.price(listed_target_[e]);
-    offer.second = std::min(offer.second, std::max(offer.best, value));
-    offer.target = value < offer.best ? listed_target_[e] : offer.target;
-    offer.best = std::min(offer.best, value);
-  }
-  return offer;
-}
-
 void WalkAuction::refill(std::uint32_t source, float best) {
   const float x = walks_.sources().search_x[source];
   const float y = walks_.sources().search_y[source];
   // Somebody's target is a first guess, the better the nearer; who stood before in the order is a neighbour.
   if (last_target_ != kNobody && !walks_.limited()) best = std::min(best, tree_.value(x, y, last_target_));
-  horizon_[source] = tree_.collect({x, y, best + margin_ + tree_.rounding(), margin_, walks_.reach()}, hits_);
-  if (hits_.size() > kListed) {
-    const auto last = hits_.begin() + kListed;
-    std::ranges::nth_element(hits_, last, [](const auto& a, const auto& b) {
-      return a.value < b.value || (a.value == b.value && a.target < b.target);
-    });
-    horizon_[source] = last->value;
-    hits_.resize(kListed);
+  horizon_[source] = tree_.collect({x, y, best + margin_ + tree_.rounding(), margin_, walks_.reach(), kListed}, finds_);
+  List& list = lists_[source];
+  std::uint32_t listed = 0;
+  for (const Hit hit : finds_.hits()) {
+    list.target[listed] = hit.target;
+    list.walk[listed++] = hit.value - tree_.price(hit.target);
   }
-  const std::size_t begin = static_cast<std::size_t>(source) * kListed;
-  listed_[source] = static_cast<std::uint32_t>(hits_.size());
-  for (std::size_t k = 0; k < hits_.size(); ++k) {
-    listed_target_[begin + k] = hits_[k].target;
-    listed_walk_[begin + k] = hits_[k].value - tree_.price(hits_[k].target);
+  for (; listed % kFan != 0; ++listed) {
+    list.target[listed] = 0;
+    list.walk[listed] = kInfinity;
   }
+  listed_[source] = listed;
 }
 
 }  // namespace footlight::planner::assignment

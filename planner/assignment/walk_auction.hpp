@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "planner/assignment/price_tree.hpp"
@@ -28,25 +29,27 @@ class WalkAuction {
   [[nodiscard]] const std::vector<std::uint32_t>& source_of() const { return source_of_; }
 
  private:
-  static constexpr std::uint32_t kListed = 32;
-  struct Offer {
-    float best = 0;
-    float second = 0;
-    std::uint32_t target = 0;
+  /// A source's best targets, filled up to a full fan with some that are infinitely far.
+  struct List {
+    float walk[kListed];
+    std::uint32_t target[kListed];
   };
-  [[nodiscard]] Offer look(std::uint32_t source) const;
+  [[nodiscard]] Offer look(std::uint32_t source) const {
+    const List& list = lists_[source];
+    return look_(list.walk, list.target, listed_[source], tree_.prices());
+  }
   void refill(std::uint32_t source, float best);
 
   const Walks& walks_;
   PriceTree& tree_;
   float margin_;
-  std::vector<std::uint32_t> listed_target_;
-  std::vector<float> listed_walk_;
+  decltype(Kernels::look) look_;
+  std::unique_ptr<List[]> lists_;
   std::vector<std::uint32_t> listed_;
   std::vector<float> horizon_;
   std::vector<std::uint32_t> target_of_, source_of_;
   std::uint32_t last_target_ = UINT32_MAX;
-  std::vector<PriceTree::Hit> hits_;
+  PriceTree::Finds finds_;
 };
 
 }  // namespace footlight::planner::assignment

@@ -202,7 +202,7 @@ void Walks::measure_spacing() {
   spacing_ = std::max<Value>(1, nearest_value(spacing * scale_));
 }
 
-Walks Walks::every_fourth() const {
+Walks Walks::fours() const {
   Walks coarse;
   coarse.metric_ = metric_;
   coarse.longest_m_ = kInfinity;
@@ -213,10 +213,11 @@ Walks Walks::every_fourth() const {
   coarse.unit_ = unit_;
   for (auto [from, to] : {std::pair{&sources_, &coarse.sources_}, std::pair{&targets_, &coarse.targets_}}) {
     for (std::size_t i = 0; i + 3 < from->x.size(); i += 4) {
-      to->x.push_back(from->x[i]);
-      to->y.push_back(from->y[i]);
-      to->search_x.push_back(from->search_x[i]);
-      to->search_y.push_back(from->search_y[i]);
+      const auto mean_of = [i](const auto& v) { return (v[i] + v[i + 1] + v[i + 2] + v[i + 3]) / 4; };
+      to->x.push_back(mean_of(from->x));
+      to->y.push_back(mean_of(from->y));
+      to->search_x.push_back(mean_of(from->search_x));
+      to->search_y.push_back(mean_of(from->search_y));
     }
   }
   coarse.spacing_ = metric_ == WalkCost::squared ? 4 * spacing_ : 2 * spacing_;

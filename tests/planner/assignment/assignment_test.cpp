@@ -14,6 +14,7 @@
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "planner/assignment/kernels.hpp"
 #include "tests/bench/instances.hpp"
 
 namespace footlight::planner {
@@ -350,6 +351,46 @@ TEST(AssignProperty, AnswersTheSameEachTime) {
       RC_ASSERT(assign(a, b, cost, kNoLimit)->target_of == assign(a, b, cost, kNoLimit)->target_of);
     }
   }));
+}
+
+/// Both formations by all instructions that this processor has; the bytes of the answers are compared.
+void expect_same_bytes(const Points& a, const Points& b, WalkCost cost, double longest_m) {
+  using assignment::Instructions;
+  assignment::use_instructions(Instructions::generic);
+  const auto expected = assign(a, b, cost, longest_m);
+  for (const Instructions instructions : {Instructions::avx512, Instructions::avx2}) {
+    if (!assignment::has_instructions(instructions)) continue;
+    assignment::use_instructions(instructions);
+    const auto found = assign(a, b, cost, longest_m);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (!found) continue;
+    EXPECT_EQ(found->target_of, expected->target_of);
+    EXPECT_EQ(found->source_value, expected->source_value);
+    EXPECT_EQ(found->target_value, expected->target_value);
+    EXPECT_EQ(found->cost, expected->cost);
+  }
+  for (const Instructions widest : {Instructions::avx2, Instructions::avx512}) {
+    if (assignment::has_instructions(widest)) assignment::use_instructions(widest);
+  }
+}
+
+TEST(AssignInstructions, AllGiveTheSameBytes) {
+  for (const auto scene : bench::kScenes) {
+    const auto instance = bench::make_instance(scene, 1000);
+    for (const WalkCost cost : kBothCosts) {
+      expect_same_bytes(instance.sources, instance.targets, cost, kNoLimit);
+      expect_same_bytes(instance.sources, instance.targets, cost, 15.0);
+    }
+  }
+  for (const std::size_t size : {7U, 60U, 150U, 500U}) {
+    for (const WalkCost cost : kBothCosts) {
+      expect_same_bytes(anywhere(size, size, 40), anywhere(size + 1, size, 40), cost, kNoLimit);
+    }
+  }
+}
+
+TEST(AssignInstructions, TheGenericOnesAreAlwaysThere) {
+  EXPECT_TRUE(assignment::has_instructions(assignment::Instructions::generic));
 }
 
 TEST(AssignSparse, RefusesTwoWhoHaveOneTarget) {
