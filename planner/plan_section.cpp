@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "planner/formation/cell_shares.hpp"
 #include "planner/formation/formation.hpp"
 #include "planner/formation/placement.hpp"
 #include "planner/formation/sampling.hpp"
-#include "planner/formation/summed_area.hpp"
 #include "planner/joint/joint_plan.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/chain.hpp"
@@ -89,7 +89,7 @@ class PictureSection {
       Station& station = plan.stations[n + 1];
       station.cells = std::move(joint->at[n + 1]);
       station.follows = true;
-      const SummedArea picture(film_.frames[static_cast<std::size_t>(keys_[n + 1].frame)]);
+      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n + 1].frame)];
       const auto shares = cell_shares(picture, grid_, placement_.map);
       station.in_picture =
           static_cast<int>(std::count_if(station.cells.begin(), station.cells.end(), [&](CellIndex cell) {
@@ -137,7 +137,7 @@ class PictureSection {
     std::int64_t most = -1;
     const Mask* largest = nullptr;
     for (const Mask* mask : key_masks()) {
-      const std::int64_t area = SummedArea(*mask).total();
+      const std::int64_t area = picture_area(*mask);
       if (area > most) {
         most = area;
         largest = mask;
@@ -166,7 +166,7 @@ class PictureSection {
     std::vector<CellIndex> middle;
     const int least = std::max(0, people_ - static_cast<int>(reserve_.size()));
     const auto draw_one = [&](std::size_t k, std::span<const CellIndex> when_blank) {
-      const SummedArea picture(film_.frames[static_cast<std::size_t>(keys_[k].frame)]);
+      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[k].frame)];
       const auto shares = cell_shares(picture, grid_, placement_.map);
       drawings_[k] = draw({&grid_, &shares, &usable_, &ranks, people_, least, when_blank});
     };

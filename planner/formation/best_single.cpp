@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planner/formation/summed_area.hpp"
+#include "planner/formation/cell_shares.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/ways.hpp"
 
@@ -45,10 +45,9 @@ std::optional<SingleFigures> best_of_frames(const Plan& plan, SectionIndex index
   const std::size_t frames = section.film->show_fps > 0 ? film.frames.size() : 1;
   std::vector<SingleBest> best(frames);
   for_each_index(frames, "best", {}, [&](std::size_t f) {
-    const SummedArea picture(film.frames[f]);
-    const auto shares = cell_shares(picture, grid, map);
-    best[f] = best_single(
-        {&shares, &usable, static_cast<double>(picture.total()) / cell_px, std::max(0, people - waiting), people});
+    const auto shares = cell_shares(film.frames[f], grid, map);
+    best[f] = best_single({&shares, &usable, static_cast<double>(picture_area(film.frames[f])) / cell_px,
+                           std::max(0, people - waiting), people});
   });
   SingleFigures sum;
   int peopled = 0;

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <tuple>
+
+#include "planner/formation/cell_distance.hpp"
 
 namespace footlight::planner {
 
@@ -24,57 +25,82 @@ std::vector<std::uint32_t> even_ranks(const Grid& grid) {
   return ranks;
 }
 
-std::vector<double> distance_to(const Grid& grid, std::span<const CellIndex> from) {
-  const std::size_t size = static_cast<std::size_t>(grid.size());
-  std::vector<double> distance(size, std::numeric_limits<double>::infinity());
-  std::vector<CellIndex> nearest(size);
-  using Entry = std::tuple<double, CellIndex, CellIndex>;  // distance, cell, nearest source
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (const CellIndex cell : from) open.emplace(0.0, cell, cell);
-  while (!open.empty()) {
-    const auto [d, cell, source] = open.top();
-    open.pop();
-    if (d >= distance[cell.at()]) continue;
-    distance[cell.at()] = d;
-    for (const CellIndex next : grid.within(grid.centre(cell), 1.75 * grid.pitch_m())) {
-      const double further = footlight::distance(grid.centre(next), grid.centre(source));
-      if (further < distance[next.at()]) open.emplace(further, next, source);
-    }
-  }
-  return distance;
+namespace {
+
+constexpr double kMillion = 1e6;
+
+/// Orders cells by falling share (in millionths), then by the even pattern, then by index.
+std::uint64_t rank_of(double share, std::uint32_t even_rank, std::size_t cell) {
+  const auto missing = static_cast<std::uint64_t>(std::llround((1 - share) * kMillion));
+  return (missing << 40) | (static_cast<std::uint64_t>(even_rank) << 24) | cell;
 }
 
+/// The `wanted` cells with the most picture of those with some, ascending.
+std::vector<CellIndex> fullest(const DrawingTask& task, int touched, int wanted) {
+  std::vector<std::uint64_t> ranks;
+  std::vector<CellIndex> cells;
+  ranks.reserve(static_cast<std::size_t>(touched));
+  cells.reserve(static_cast<std::size_t>(touched));
+  for (std::size_t i = 0; i < task.shares->size(); ++i) {
+    const double share = (*task.shares)[i];
+    if (share <= 0 || (*task.usable)[i] == 0) continue;
+    ranks.push_back(rank_of(share, (*task.ranks)[i], i));
+    cells.push_back(CellIndex::of(i));
+  }
+  if (wanted <= 0) return {};
+  if (wanted >= touched) return cells;
+  std::vector<std::uint64_t> order = ranks;
+  const auto last = order.begin() + (wanted - 1);
+  std::nth_element(order.begin(), last, order.end());
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    if (ranks[n] <= *last) cells[kept++] = cells[n];
+  }
+  cells.resize(kept);
+  return cells;
+}
+
+/// All cells with picture (or those to start from where there is none) and the usable cells nearest to them.
+std::vector<CellIndex> widened(const DrawingTask& task, std::vector<CellIndex> cells, int wanted) {
+  CellDistance away(*task.grid);
+  std::vector<CellIndex> core = cells;
+  if (cells.empty()) core = {task.when_blank.begin(), task.when_blank.end()};
+  away.set_to(core);
+  struct Wider {
+    double away_m;
+    std::uint32_t rank;
+    CellIndex cell;
+  };
+  std::vector<Wider> more;
+  for (std::size_t i = 0; i < task.shares->size(); ++i) {
+    if ((*task.usable)[i] == 0 || (*task.shares)[i] > 0) continue;
+    more.push_back({away.of(CellIndex::of(i)), (*task.ranks)[i], CellIndex::of(i)});
+  }
+  const std::size_t missing = static_cast<std::size_t>(wanted) - cells.size();
+  std::sort(more.begin(), more.end(), [](const Wider& a, const Wider& b) {
+    return std::tie(a.away_m, a.rank, a.cell) < std::tie(b.away_m, b.rank, b.cell);
+  });
+  for (std::size_t n = 0; n < missing; ++n) cells.push_back(more[n].cell);
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+}  // namespace
+
 Drawing draw(const DrawingTask& task) {
-  const std::size_t size = task.shares->size();
-  std::vector<CellIndex> order;
-  std::vector<CellIndex> core = {task.when_blank.begin(), task.when_blank.end()};
-  double area = 0;
   Drawing drawing;
-  for (std::size_t i = 0; i < size; ++i) {
+  int usable = 0;
+  double area = 0;
+  for (std::size_t i = 0; i < task.shares->size(); ++i) {
     if ((*task.usable)[i] == 0) continue;
-    order.push_back(CellIndex::of(i));
+    ++usable;
     area += (*task.shares)[i];
     drawing.touched += (*task.shares)[i] > 0 ? 1 : 0;
   }
   drawing.full = area > 0 ? std::max(1, static_cast<int>(std::lround(area))) : 0;
-  const int wanted =
-      std::min(std::clamp(drawing.full, std::min(task.least, task.most), task.most), static_cast<int>(order.size()));
-  const auto share = [&](CellIndex cell) { return (*task.shares)[cell.at()]; };
-  if (drawing.touched > 0) {
-    core.clear();
-    for (const CellIndex cell : order) {
-      if (share(cell) > 0) core.push_back(cell);
-    }
-  }
-  std::vector<double> away(size, 0.0);
-  if (wanted > drawing.touched) away = distance_to(*task.grid, core);
-  std::sort(order.begin(), order.end(), [&](CellIndex a, CellIndex b) {
-    return std::tuple(-share(a), away[a.at()], (*task.ranks)[a.at()], a) <
-           std::tuple(-share(b), away[b.at()], (*task.ranks)[b.at()], b);
-  });
-  order.resize(static_cast<std::size_t>(wanted));
-  std::sort(order.begin(), order.end());
-  drawing.cells = std::move(order);
+  const int wanted = std::min(std::clamp(drawing.full, std::min(task.least, task.most), task.most), usable);
+  drawing.cells = fullest(task, drawing.touched, wanted);
+  if (wanted > drawing.touched) drawing.cells = widened(task, std::move(drawing.cells), wanted);
   drawing.in_picture = std::min(drawing.touched, wanted);
   return drawing;
 }
@@ -88,26 +114,35 @@ std::vector<std::vector<CellIndex>> waiting_places(const WaitingTask& task) {
   for (std::size_t i = 0; i < in_any.size(); ++i) {
     if (in_any[i] != 0) all.push_back(CellIndex::of(i));
   }
-  const std::vector<double> away_from_all = distance_to(*task.grid, all);
+  CellDistance away(*task.grid);
+  away.set_to(all);
+  const auto distances = [&](std::span<const CellIndex> cells) {
+    std::vector<std::pair<std::int64_t, CellIndex>> out;  // micrometres
+    for (const CellIndex cell : cells) {
+      const double away_m = away.of(cell);
+      out.emplace_back(std::isfinite(away_m) ? std::llround(away_m * 1e6) : std::numeric_limits<std::int64_t>::max(),
+                       cell);
+    }
+    return out;
+  };
   std::vector<CellIndex> free = *task.reserve;
   std::vector<CellIndex> waiting;
   std::vector<std::vector<CellIndex>> out;
   for (const Drawing& drawing : *task.drawings) {
     const std::size_t wanted = static_cast<std::size_t>(task.people) - drawing.cells.size();
     FL_CHECK(wanted <= task.reserve->size());
-    const bool first = out.empty();
-    const std::vector<double> away =
-        first || drawing.cells.empty() ? away_from_all : distance_to(*task.grid, drawing.cells);
-    const auto nearer = [&](CellIndex a, CellIndex b) {
-      return std::tuple(std::round(away[a.at()] * 1e6), a) < std::tuple(std::round(away[b.at()] * 1e6), b);
-    };
     auto& from = waiting.size() > wanted ? waiting : free;
     auto& to = waiting.size() > wanted ? free : waiting;
     const std::size_t moved = waiting.size() > wanted ? waiting.size() - wanted : wanted - waiting.size();
-    std::sort(from.begin(), from.end(), nearer);
-    const auto end = from.begin() + static_cast<std::ptrdiff_t>(moved);
-    to.insert(to.end(), from.begin(), end);
-    from.erase(from.begin(), end);
+    if (moved > 0) {
+      if (!out.empty()) away.set_to(drawing.cells.empty() ? std::span<const CellIndex>(all) : drawing.cells);
+      auto order = distances(from);
+      std::sort(order.begin(), order.end());
+      for (std::size_t n = 0; n < order.size(); ++n) from[n] = order[n].second;
+      const auto end = from.begin() + static_cast<std::ptrdiff_t>(moved);
+      to.insert(to.end(), from.begin(), end);
+      from.erase(from.begin(), end);
+    }
     std::sort(waiting.begin(), waiting.end());
     out.push_back(waiting);
   }

@@ -14,9 +14,6 @@ namespace footlight::planner {
 /// floor, and the same in every frame, so that thinning moves nobody. One rank a cell.
 [[nodiscard]] std::vector<std::uint32_t> even_ranks(const Grid& grid);
 
-/// For each cell the distance, m, to the nearest of `from` (infinity when there are none). O(cells log cells)
-[[nodiscard]] std::vector<double> distance_to(const Grid& grid, std::span<const CellIndex> from);
-
 /// What one frame draws.
 struct Drawing {
   std::vector<CellIndex> cells;  ///< ascending, exactly `people`, unless fewer are usable
@@ -38,7 +35,7 @@ struct DrawingTask {
 /// The cells of a frame (Li 2020 Eq. 5-6): as many as the picture's area fills, within [least, most]. They are the
 /// cells with the most picture, so T_g is the share of the last one chosen; among cells with equal shares an even
 /// pattern decides. Where there must be more people than cells with picture the picture is widened by the cells nearest
-/// to it.
+/// to it. O(cells); where it is widened O(cells log cells)
 [[nodiscard]] Drawing draw(const DrawingTask& task);
 
 /// Who waits where from frame to frame.
@@ -52,7 +49,8 @@ struct WaitingTask {
 /// The reserve cells that are occupied in each frame: at first the ones nearest to all pictures together, then as few
 /// changes as the number of people allows, always at the cells nearest to the frame's own picture, so that who enters
 /// and who leaves has the shortest way. @return for each frame ascending cells; a drawing and its waiting cells are
-/// `people` together. O(frames x cells log cells)
+/// `people` together. O(frames x (cells + reserve x
+/// (rows + log reserve)))
 [[nodiscard]] std::vector<std::vector<CellIndex>> waiting_places(const WaitingTask& task);
 
 }  // namespace footlight::planner

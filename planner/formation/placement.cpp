@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <numeric>
 
-#include "planner/formation/summed_area.hpp"
+#include "planner/formation/cell_shares.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -74,26 +73,25 @@ struct Misfit {
 };
 
 Misfit misfit(const std::vector<double>& shares, const CellFlags& usable, int people) {
-  std::vector<double> chosen;
+  std::vector<std::int32_t> missing;  // millionths, so that the order of adding does not matter
   int above = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    if (usable[i] == 0 || shares[i] <= 0) continue;
-    chosen.push_back(shares[i]);
+    if (shares[i] <= 0 || usable[i] == 0) continue;
+    missing.push_back(static_cast<std::int32_t>(std::lround((1 - shares[i]) * 1e6)));
     above += shares[i] > 0.5 ? 1 : 0;
   }
-  const std::size_t count = std::min(chosen.size(), static_cast<std::size_t>(people));
-  std::partial_sort(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(count), chosen.end(),
-                    std::greater<>());
-  const double sum = std::accumulate(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
-  return {static_cast<double>(std::abs(above - people)), -sum};
+  const std::size_t count = std::min(missing.size(), static_cast<std::size_t>(people));
+  const auto end = missing.begin() + static_cast<std::ptrdiff_t>(count);
+  if (end != missing.end()) std::nth_element(missing.begin(), end, missing.end());
+  const auto sum = std::accumulate(missing.begin(), end, std::int64_t{0});
+  return {static_cast<double>(std::abs(above - people)), static_cast<double>(sum) / 1e6 - static_cast<double>(count)};
 }
 
-Point descend_offset(const PlacementTask& task, const SummedArea& picture, double scale, Point frame_middle,
-                     Point floor_middle) {
+Point descend_offset(const PlacementTask& task, double scale, Point frame_middle, Point floor_middle) {
   const double pitch = task.stage->grid.pitch_m();
   const auto trial = [&](Point offset) {
     const StageToFrame map = map_of(scale, frame_middle, floor_middle + pitch * offset);
-    return misfit(cell_shares(picture, task.stage->grid, map), *task.usable, task.people);
+    return misfit(cell_shares(*task.largest, task.stage->grid, map), *task.usable, task.people);
   };
   Point best{};
   Misfit least = trial(best);
@@ -168,20 +166,19 @@ Placement place_picture(const PlacementTask& task) {
   const double frame_h = task.largest->height();
   const double contain = std::max(frame_w / floor.width(), frame_h / floor.height());
   const double cover = std::min(frame_w / floor.width(), frame_h / floor.height());
-  const SummedArea picture(*task.largest);
+  const auto picture_px = static_cast<double>(picture_area(*task.largest));
   double scale = task.fit == Fit::cover ? cover : contain;
   Placement placement;
   Point frame_middle{frame_w / 2, frame_h / 2};
-  if (task.fit == Fit::area && picture.total() > 0) {
+  if (task.fit == Fit::area && picture_px > 0) {
     frame_middle = {(task.extent.x0 + task.extent.x1) / 2, (task.extent.y0 + task.extent.y1) / 2};
     const double smallest =  // pixels a metre at which the extent just fits on the floor
         std::max(task.extent.width() / floor.width(), task.extent.height() / floor.height());
-    const double wanted =
-        std::sqrt(static_cast<double>(picture.total()) / (task.people * task.stage->grid.cell_area_m2()));
+    const double wanted = std::sqrt(picture_px / (task.people * task.stage->grid.cell_area_m2()));
     scale = wanted;
     // What blocked cells take away is made up by a larger picture; a few rounds are enough.
     for (int round = 0; round < 6 && scale > smallest; ++round) {
-      const auto shares = cell_shares(picture, task.stage->grid, map_of(scale, frame_middle, floor_middle));
+      const auto shares = cell_shares(*task.largest, task.stage->grid, map_of(scale, frame_middle, floor_middle));
       const double filled = usable_cells(shares, *task.usable) / task.people;
       if (filled <= 0 || std::abs(filled - 1) < 0.002) break;
       scale *= std::sqrt(filled);
@@ -192,7 +189,7 @@ Placement place_picture(const PlacementTask& task) {
     }
     placement.drawn_share = std::min(placement.drawn_share, 1.0);
   }
-  const Point offset = descend_offset(task, picture, scale, frame_middle, floor_middle);
+  const Point offset = descend_offset(task, scale, frame_middle, floor_middle);
   placement.map = map_of(scale, frame_middle, floor_middle + task.stage->grid.pitch_m() * offset);
   return placement;
 }

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "planner/formation/cell_shares.hpp"
 #include "planner/formation/formation.hpp"
-#include "planner/formation/summed_area.hpp"
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/measure.hpp"
 #include "planner/validate.hpp"
@@ -21,7 +21,6 @@ namespace footlight::bench {
 namespace {
 
 using planner::CellFlags;
-using planner::SummedArea;
 
 struct FrameSize {
   const char* name;
@@ -48,7 +47,7 @@ class Floor {
   }
   [[nodiscard]] Mask frame(double turn) const { return flower_picture(width_, height_, turn); }
   [[nodiscard]] std::vector<double> shares(const Mask& mask) const {
-    return planner::cell_shares(SummedArea(mask), stage_.grid, placement_.map);
+    return planner::cell_shares(mask, stage_.grid, placement_.map);
   }
   [[nodiscard]] planner::Drawing drawing(const Mask& mask) const {
     const auto picture = shares(mask);

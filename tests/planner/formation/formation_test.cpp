@@ -104,19 +104,6 @@ TEST(Draw, ExactlyTheNumberAskedForAndNeverAnUnusableCell) {
   }));
 }
 
-TEST(DistanceTo, IsTheDistanceToTheNearestCellOnEveryGrid) {
-  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
-    const Grid grid = *Grid::make(kind, 14, 11, 1.5);
-    const std::vector<CellIndex> from{grid.index({2, 3}), grid.index({11, 9})};
-    const auto away = distance_to(grid, from);
-    for (int i = 0; i < grid.size(); ++i) {
-      const Point here = grid.centre(CellIndex::of(i));
-      const double expected = std::min(distance(here, grid.centre(from[0])), distance(here, grid.centre(from[1])));
-      EXPECT_NEAR(away[static_cast<std::size_t>(i)], expected, 1e-9);
-    }
-  }
-}
-
 TEST(WaitingPlaces, ChangeByNoMoreCellsThanPeopleEnterOrLeave) {
   const Grid grid = *Grid::make(GridKind::square, 20, 6, 1.0);
   std::vector<CellIndex> reserve;
