@@ -11,6 +11,7 @@
 
 #include "app/marker_watch.hpp"
 #include "app/simulated_buses.hpp"
+#include "controller/bus_budget.hpp"
 #include "controller/bus_loop.hpp"
 #include "controller/cue_engine.hpp"
 #include "controller/cue_list.hpp"
@@ -29,14 +30,13 @@ using controller::CueSchedule;
 
 constexpr Duration kPostRoll = milliseconds(2500);     // time for the last lamps to be right
 constexpr Duration kRefresh = milliseconds(2000);      // every marker is looked at this often
-constexpr Duration kHeartbeat = milliseconds(250);     // T0 of the trust model
 constexpr Duration kCompareAhead = microseconds(200);  // before the first latch of the next switch is handed over
 constexpr Duration kPaceStep = milliseconds(50);
 constexpr std::size_t kShownWrong = 10;
 constexpr int kMostAtOnce = 10'000;
 
-/// Time before the show for look tables, roll call and the opening.
-Duration pre_roll(const Rig& rig) {
+/// Time before the show for the roll call, at which nodes may be silent; the opening is lit meanwhile.
+Duration roll_call(const Rig& rig) {
   std::vector<std::size_t> nodes(rig.buses.size(), 0);
   for (const Node& node : rig.nodes) ++nodes[node.bus.at()];
   const std::size_t most = nodes.empty() ? 0 : *std::ranges::max_element(nodes);
@@ -58,8 +58,7 @@ class DryRun {
         rig_(std::move(rig)),
         options_(options),
         plays_(std::move(plays)),
-        show_starts_(kStart + pre_roll(rig_)),
-        simulated_(rig_, options.faults, options.seed, show_starts_, run_length(plays_), clock_, options.trace) {}
+        simulated_(rig_, options.faults, options.seed, clock_, options.trace) {}
 
   Result<DryRunReport> run();
 
@@ -118,6 +117,8 @@ Status<> DryRun::connect() {
   auto schedule = controller::build_schedule(show_, plan_, rig_, drivers_);
   if (!schedule) return schedule.error();
   schedule_ = std::move(schedule).value();
+  show_starts_ = kStart + std::max(roll_call(rig_), controller::opening_time(*schedule_, rig_, drivers_));
+  simulated_.set_show(show_starts_, run_length(plays_));
   for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
     loops_.push_back(
         std::make_unique<BusLoop>(*schedule_, drivers::node_addresses(rig_, BusIndex::of(b)), *drivers_[b]));
@@ -279,7 +280,7 @@ bool DryRun::exempt(NodeIndex node) const {
   const BusLoop& loop = *loops_[rig_.nodes[node.at()].bus.at()];
   return std::ranges::any_of(simulated_.reboots(), [&](const sim::Reboot& reboot) {
     return reboot.node == node && reboot.at <= clock_.now() &&
-           clock_.now() <= reboot.at + loop.suspect_time() + kHeartbeat;
+           clock_.now() <= reboot.at + loop.suspect_time() + drivers::kHeartbeatPeriod;
   });
 }
 

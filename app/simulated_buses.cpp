@@ -62,7 +62,7 @@ Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedR
 Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
   const Rig wires = with_simulated_buses(rig);
   ManualClock clock;
-  sim::SimulatedRig simulated(wires, {}, 1, kStart, Duration{}, clock, nullptr);
+  sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
   const auto drivers = drivers_on(simulated, wires, plan);
   if (!drivers) return drivers.error();
   const auto schedule = controller::build_schedule(show, plan, wires, *drivers);

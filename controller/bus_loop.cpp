@@ -18,7 +18,6 @@ constexpr Duration kHopefulBackoff = milliseconds(100);
 constexpr Duration::rep kHopefulShare = 3;  // and costs at most a quarter of the bus's idle time
 constexpr std::uint8_t kMissesToQuarantine = 3;
 constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
-constexpr std::uint8_t kUploads = 2;       // uploads have no receipt
 constexpr int kMostOperations = 64;        // a step ends, whatever a driver says
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr Duration kRetryBusy = milliseconds(1);
@@ -31,6 +30,8 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
     : schedule_(schedule), driver_(driver), can_(driver.capabilities()) {
   latch_time_ = driver.latch_time();
   status_time_ = driver.status_time();
+  heartbeat_time_ = driver.heartbeat_time();
+  upload_time_ = driver.upload_time();
   for (int channels = 1; channels <= kChannelsPerNode; ++channels) {
     preload_time_[static_cast<std::size_t>(channels)] = driver.preload_time(channels);
   }
@@ -43,7 +44,7 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
     node.address = address;
   }
   for (std::size_t i = 1; i < schedule.looks().size(); ++i) {
-    uploads_[i] = kUploads;
+    uploads_[i] = std::uint8_t{kUploads};
     urgent_[i] = true;
   }
 }
@@ -297,7 +298,7 @@ void BusLoop::on_boot(NodeState& node) noexcept {
   node.pending = kNone;
   node.offered = kNone;
   // It has lost its look table, too: first what it must show, the rest in idle time.
-  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) uploads_[i] = kUploads;
+  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) uploads_[i] = std::uint8_t{kUploads};
   need_looks(current_, node);
   need_looks(next_, node);
 }
@@ -325,7 +326,11 @@ std::vector<NodeIndex> BusLoop::quarantined() const {
 }
 
 Duration BusLoop::notice(std::size_t k) const {
-  if (can_.sequenced_latch || k == 0) return {};
+  if (k == 0) return {};
+  if (can_.sequenced_latch) {
+    // What is on the wire at the GO ends, then the latch takes its time.
+    return latch_time_ + std::max({status_time_, heartbeat_time_, upload_time_, preload_time_[kChannelsPerNode]});
+  }
   Duration sum{};
   for (const NodeState& node : nodes_) {
     if (!std::ranges::equal(looks(k - 1, node), looks(k, node))) sum += preload_time_[node.address.channels];

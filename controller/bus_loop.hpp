@@ -36,6 +36,9 @@ struct BusCounters {
   Duration worst_lateness{};       ///< of a latch's last bit
 };
 
+/// Times that each look is sent at the start: uploads have no receipt.
+inline constexpr int kUploads = 2;
+
 /// One bus: brings what its nodes show to what the schedule says, level-triggered. For each node there is a desired
 /// state and a last confirmed one; the difference is sent again and again until it is confirmed, so a lost frame, a
 /// rebooted node, a seek and a restarted controller are one case.
@@ -61,7 +64,8 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::size_t lit() const noexcept { return current_; }
   /// Nodes that have not answered for so long that they are only asked from time to time.
   [[nodiscard]] std::vector<NodeIndex> quarantined() const;
-  /// How long before a switch of unknown instant (a GO) this bus has to know it: 0 where looks wait preloaded.
+  /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not
+  /// late.
   [[nodiscard]] Duration notice(std::size_t k) const;
   /// Time in which a silent node is noticed: 1 s, or a round of questions that takes a fifth of the bus.
   [[nodiscard]] Duration suspect_time() const;
@@ -143,6 +147,8 @@ class BusLoop final : private drivers::EventSink {
   // The driver's budgets, asked once: they are wanted at every step.
   Duration latch_time_{};
   Duration status_time_{};
+  Duration heartbeat_time_{};
+  Duration upload_time_{};
   std::array<Duration, kChannelsPerNode + 1> preload_time_{};
   std::vector<NodeState> nodes_;
   std::vector<std::int32_t> by_node_;  ///< position in nodes_ of a NodeIndex, -1: of another bus

@@ -7,7 +7,6 @@
 namespace footlight::controller {
 namespace {
 
-constexpr Duration kHeartbeat = milliseconds(250);
 constexpr Duration kRefreshRound = milliseconds(800);  // every node is asked this often, the wire allowing
 constexpr Duration kSyncPoll = milliseconds(500);
 constexpr Duration kResendRound = milliseconds(2000);  // devices that cannot be read back
@@ -15,8 +14,9 @@ constexpr Duration kTableRefresh = milliseconds(500);  // one look each
 constexpr Duration kLateness = milliseconds(1);
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr Duration kAnswerWindow =
-    milliseconds(15);             // turnaround and margin of nodes that answer a latch by themselves
-constexpr double kRepeats = 1.4;  // room for lost preloads: 1 / (1 - 30 %)
+    milliseconds(15);               // turnaround and margin of nodes that answer a latch by themselves
+constexpr double kLeastWire = 0.1;  // heartbeats leave so much, in any case
+constexpr double kRepeats = 1.4;    // room for lost preloads: 1 / (1 - 30 %)
 
 }  // namespace
 
@@ -86,8 +86,8 @@ bool BusLoop::repeat_latch() noexcept {
 
 bool BusLoop::send_heartbeat() noexcept {
   if (now_ < heartbeat_at_ || !fits(time_of(Operation::heartbeat))) return false;
-  if (!took(driver_.heartbeat(show_time_, now_), Operation::heartbeat, latch_time_)) return false;
-  heartbeat_at_ = now_ + kHeartbeat;
+  if (!took(driver_.heartbeat(show_time_, now_), Operation::heartbeat, heartbeat_time_)) return false;
+  heartbeat_at_ = now_ + drivers::kHeartbeatPeriod;
   return true;
 }
 
@@ -101,10 +101,7 @@ bool BusLoop::upload(bool urgent_only) noexcept {
   }
   if (most == 0) return false;
   const auto index = static_cast<LookIndex>(most);
-  if (!took(driver_.upload_look(index, schedule_.looks()[most], now_), Operation::upload,
-            preload_time_[kChannelsPerNode / 2])) {
-    return false;
-  }
+  if (!took(driver_.upload_look(index, schedule_.looks()[most], now_), Operation::upload, upload_time_)) return false;
   if (--uploads_[most] == 0) urgent_[most] = false;
   return true;
 }
@@ -179,7 +176,10 @@ Instant BusLoop::preload_from() const noexcept {
   if (latch == kNever) return kNever;
   const Duration left = preloads_left();
   if (left.count() == 0) return latch;
-  const auto room = Duration(static_cast<Duration::rep>(static_cast<double>(left.count()) * kRepeats));
+  // Heartbeats go on meanwhile.
+  const double beating = static_cast<double>(heartbeat_time_.count()) / drivers::kHeartbeatPeriod.count();
+  const double stretch = kRepeats / std::max(1 - beating, kLeastWire);
+  const auto room = Duration(static_cast<Duration::rep>(static_cast<double>(left.count()) * stretch));
   return latch - room - 2 * time_of(Operation::preload) - time_of(Operation::heartbeat);
 }
 
@@ -273,7 +273,8 @@ Duration BusLoop::time_of(Operation operation) const noexcept {
   Duration budget = latch_time_;
   if (operation == Operation::ask) budget = status_time_;
   if (operation == Operation::preload) budget = preload_time_[kChannelsPerNode];
-  if (operation == Operation::upload) budget = preload_time_[kChannelsPerNode / 2];
+  if (operation == Operation::heartbeat) budget = heartbeat_time_;
+  if (operation == Operation::upload) budget = upload_time_;
   return std::max(budget, longest_[static_cast<std::size_t>(operation)]);
 }
 

@@ -23,6 +23,9 @@ inline constexpr Sequence kLastSequence = 240;
 /// CRC-16/CCITT-FALSE: what nodes return of the looks they show.
 [[nodiscard]] std::uint16_t looks_crc(std::span<const LookIndex> looks);
 
+/// The controller renews the markers' lease this often (docs/wire-protocol.md).
+inline constexpr Duration kHeartbeatPeriod = milliseconds(250);
+
 /// A node as its bus knows it.
 struct NodeAddress {
   NodeIndex node;  ///< in the rig
@@ -80,6 +83,10 @@ class Driver {
   [[nodiscard]] virtual Duration status_time() const = 0;
   /// From handing over a latch on an idle bus until its last bit is on the wire.
   [[nodiscard]] virtual Duration latch_time() const = 0;
+  [[nodiscard]] virtual Duration heartbeat_time() const = 0;  ///< 0 where there is no lease
+  /// Heartbeats that the nodes send by themselves in one kHeartbeatPeriod.
+  [[nodiscard]] virtual Duration node_heartbeats_time() const { return {}; }
+  [[nodiscard]] virtual Duration upload_time() const = 0;     ///< one look; 0 where the device has no look table
 
   /// True when another operation would be accepted now.
   [[nodiscard]] virtual bool ready() const = 0;

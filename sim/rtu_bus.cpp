@@ -107,7 +107,8 @@ void RtuBus::request_is_out() {
     return;
   }
   phase_ = Phase::waiting;
-  around_.world.schedule(now + kReplyTimeout, *this, token(kGiveUp, 0, generation_));
+  around_.world.schedule(now + std::max(kLongestTurnaround, silence_) + kReplyMargin, *this,
+                         token(kGiveUp, 0, generation_));
   while (phase_ == Phase::waiting && !unread_.empty()) {
     const auto frame = std::move(unread_.front());
     unread_.pop_front();

@@ -22,8 +22,9 @@ namespace footlight::sim {
 /// it, without an error, as libmodbus 3.1.6 does it. A frame that is heard twice is obeyed twice and answered once.
 class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private SharedLine::Listener {
  public:
-  static constexpr Duration kReplyTimeout = milliseconds(30);  ///< from the last bit of the request
-  static constexpr Duration kBroadcastGap = milliseconds(2);   ///< from the last bit, until the port is free
+  /// From the last moment at which a reply may begin until nobody waits for it any more.
+  static constexpr Duration kReplyMargin = milliseconds(25);
+  static constexpr Duration kBroadcastGap = milliseconds(2);  ///< from the last bit, until the port is free
 
   RtuBus(const Bus& bus, const Surroundings& surroundings);
 

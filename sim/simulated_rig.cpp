@@ -126,9 +126,9 @@ struct SimulatedRig::State final : Actor {
   Instant faults_end = kNever;
 };
 
-SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, Instant show_start,
-                           Duration show_length, ManualClock& clock, std::ostream* trace)
-    : state_(std::make_unique<State>(rig, clock, trace)) {
+SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, ManualClock& clock,
+                           std::ostream* trace)
+    : state_(std::make_unique<State>(rig, clock, trace)), faults_(faults), seed_(seed) {
   State& state = *state_;
   const Rng rng(seed);
   for (std::size_t i = 0; i < state.rig.buses.size(); ++i) {
@@ -147,13 +147,16 @@ SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t s
     state.places.push_back({&bus, slot});
   }
   for (auto& bus : state.buses) bus->begin();
-  const Duration faulty(
-      static_cast<Duration::rep>(std::round(static_cast<double>(show_length.count()) * faults.until)));
-  if (faults.until < 1) state.world.schedule(std::max(clock.now(), show_start + faulty), state, kEndOfFaults);
+}
+
+void SimulatedRig::set_show(Instant start, Duration length) {
+  State& state = *state_;
+  FL_CHECK(state.reboots.empty() && start >= state.world.now());
+  const Duration faulty(static_cast<Duration::rep>(std::round(static_cast<double>(length.count()) * faults_.until)));
+  if (faults_.until < 1) state.world.schedule(start + faulty, state, kEndOfFaults);
   state.reboots =
-      draw_reboots(state.rig.nodes.size(), state.dead, faults.reboot, show_start, faulty, rng.split(kRebootStream));
+      draw_reboots(state.rig.nodes.size(), state.dead, faults_.reboot, start, faulty, Rng(seed_).split(kRebootStream));
   for (const Reboot& reboot : state.reboots) {
-    FL_CHECK(reboot.at >= clock.now());
     state.world.schedule(reboot.at, state, 2 * std::uint64_t{reboot.node.value()});
   }
 }

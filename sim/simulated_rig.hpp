@@ -30,13 +30,15 @@ struct Reboot {
 /// calls.
 class SimulatedRig {
  public:
-  /// @param show_length reboots fall into [show_start, show_start + show_length * faults.until)
   /// @param trace one line for each frame, or null; borrowed for the life of the rig
-  SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, Instant show_start, Duration show_length,
-               ManualClock& clock, std::ostream* trace);
+  SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t seed, ManualClock& clock, std::ostream* trace);
   ~SimulatedRig();
   SimulatedRig(const SimulatedRig&) = delete;
   SimulatedRig& operator=(const SimulatedRig&) = delete;
+
+  /// Draws the reboots in [start, start + length * faults.until), where the faults end. At most once, not after
+  /// `start`.
+  void set_show(Instant start, Duration length);
 
   /// The port of a bus; the kind must be the bus's own.
   [[nodiscard]] drivers::ByteStream& serial(BusIndex bus);
@@ -67,6 +69,8 @@ class SimulatedRig {
  private:
   struct State;
   std::unique_ptr<State> state_;
+  Faults faults_;
+  std::uint64_t seed_ = 0;
 };
 
 }  // namespace footlight::sim

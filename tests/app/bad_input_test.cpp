@@ -175,10 +175,10 @@ TEST_F(BadInput, ABusThatCannotCarryItsCuesInTime) {
   expect_refused(
       3,
       "@/rig.yaml:2:9: error: buses[0]: the modbus-rtu bus \"a\" at 1200 bit/s cannot carry switch 3 \"ring at "
-      "count 9\" (count 9, 4.800 s) in time: 3 nodes change: preloads 1595.0 ms + 3 receipts of the switch "
-      "before 880.0 ms + latch 169.6 ms = 2644.6 ms; the switch before is 2400.0 ms earlier, of which "
-      "1680.0 ms may be used and 30 % stay in reserve; 4 of 7 switches do not fit (share its nodes among 2 "
-      "buses, or raise the bit rate, which does not shorten silences and turnarounds, or leave 6.30 counts "
+      "count 9\" (count 9, 4.800 s) in time: preloads of 3 nodes that change 1595.0 ms + 3 receipts of the "
+      "switch before 880.0 ms + 2 latches 339.2 ms + 10 heartbeats 1512.5 ms = 4326.7 ms; the switch before "
+      "is 2400.0 ms earlier, of which 1680.0 ms may be used and 30 % stay in reserve; 4 of 7 switches do "
+      "not fit (raise the bit rate, which does not shorten silences and turnarounds, or leave 49.37 counts "
       "between these switches instead of 4.00)",
       {"check", "dryrun"});
 }

@@ -221,19 +221,18 @@ TEST(BusBudget, ABusThatCannotCarryASwitchIsRefusedWithTheArithmetic) {
   small.rig = lamps_everywhere(small.show.stage.grid, {BusKind::serial}, 115'200, 8);
   small.rig.file = "rig.yaml";
   small.rig.buses[0].position = {"rig.yaml", 3, 7};
-  // 160 nodes that change at every switch, a second apart: 640 ms of preloads, 480 ms of receipts, a latch of 1 ms.
+  // 160 nodes that change at every switch, a second apart: 4 ms for each preload, 3 ms for each receipt.
   const auto schedule = build_schedule(small.show, small.plan, small.rig, fake_drivers(small.rig));
   ASSERT_FALSE(schedule.has_value());
   EXPECT_EQ(schedule.error().kind, ErrorKind::refused);
   EXPECT_EQ(
       schedule.error().message,
       "rig.yaml:3:7: error: buses[0]: the serial bus \"bus1\" at 115200 bit/s cannot carry switch 5 \"s1/3\" (count 9, "
-      "4.000 "
-      "s) in time: 160 nodes change: preloads 640.0 ms + 145 receipts of the switch before 435.0 ms + latch 1.0 ms "
-      "= 1076.0 ms; the switch before is 1000.0 ms earlier, of which 700.0 ms may be used and 30 % stay in reserve; "
-      "4 of 5 switches do not fit (share its nodes among 2 buses, or raise the bit rate, which does not shorten "
-      "silences and turnarounds, or leave "
-      "3.07 counts between these switches instead of 2.00)");
+      "4.000 s) in time: preloads of 160 nodes that change 640.0 ms + 145 receipts of the switch before 435.0 ms + 2 "
+      "latches 2.0 ms + 4 heartbeats 4.0 ms = 1081.0 ms; the switch before is 1000.0 ms earlier, of which 700.0 ms may "
+      "be used and 30 % stay in reserve; 4 of 5 switches do not fit (share its nodes among 2 buses, or raise the bit "
+      "rate, which does not shorten silences and turnarounds, or leave 3.09 counts between these switches instead of "
+      "2.00)");
 }
 
 TEST(BusBudget, ABusThatCarriesItWithReserveIsNotRefused) {

@@ -69,6 +69,8 @@ class FakeDriver final : public drivers::Driver {
   [[nodiscard]] Duration preload_time(int) const override { return milliseconds(4); }
   [[nodiscard]] Duration status_time() const override { return milliseconds(3); }
   [[nodiscard]] Duration latch_time() const override { return milliseconds(1); }
+  [[nodiscard]] Duration heartbeat_time() const override { return milliseconds(1); }
+  [[nodiscard]] Duration upload_time() const override { return milliseconds(1); }
   [[nodiscard]] bool ready() const override { return !busy_; }
 
   drivers::SendStatus start(Instant now) override { return take({Kind::start, {}, 0, now}, milliseconds(1)); }

@@ -97,7 +97,19 @@ TEST(RtuBus, WireTimeBoundsEveryExchange) {
   EXPECT_EQ(line.port.wire_time(request), Duration(9'137'153));
 }
 
-TEST(RtuBus, NobodyThereIsATimeoutOfFiftyMillisecondsAfterTheRequest) {
+// The silence before a reply is longer at 1,200 Bd than the time that the port waited for it.
+TEST(RtuBus, RegressionAReplyOnASlowLineIsWaitedFor) {
+  for (const int bits_per_second : {1200, 2400, 9600}) {
+    Line line(rtu_rig(1, bits_per_second));
+    for (int i = 0; i < 50; ++i) {
+      const Instant start = line.clock.now();
+      EXPECT_EQ(line.exchange(read(1, 0x40, 6))->outcome, Outcome::ok) << bits_per_second;
+      EXPECT_LE(line.clock.now() - start, line.port.wire_time(read(1, 0x40, 6))) << bits_per_second;
+    }
+  }
+}
+
+TEST(RtuBus, NobodyThereIsATimeoutOfThirtyMillisecondsAfterTheRequest) {
   Line line(rtu_rig(1, 115'200));
   const auto reply = line.exchange(read(9, 0x40, 1));
   ASSERT_TRUE(reply.has_value());

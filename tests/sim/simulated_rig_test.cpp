@@ -129,8 +129,8 @@ TEST(SimulatedRig, TrafficOnOneBusDoesNotChangeTheFaultsOfAnother) {
 TEST(SimulatedRig, TheTraceMakesNoDifferenceToWhatHappens) {
   Bench traced(mixed_rig(), all_faults(), 42);
   ManualClock clock;
-  SimulatedRig silent(mixed_rig(), all_faults(), 42, kStart + std::chrono::seconds(1), std::chrono::seconds(10), clock,
-                      nullptr);
+  SimulatedRig silent(mixed_rig(), all_faults(), 42, clock, nullptr);
+  silent.set_show(kStart + std::chrono::seconds(1), std::chrono::seconds(10));
   for (int i = 1; i < 200; ++i) {
     for (SimulatedRig* rig : {&traced.simulated, &silent}) {
       rig->can(BusIndex(3)).send(frame(0x080, {i}));

@@ -28,7 +28,9 @@ inline Rig small_rig(BusKind kind, int nodes, int channels, int bits_per_second)
 /// A simulated rig with its clock and trace.
 struct Bench {
   explicit Bench(const Rig& rig, const Faults& faults = {}, std::uint64_t seed = 1)
-      : simulated(rig, faults, seed, kStart + std::chrono::seconds(1), std::chrono::seconds(10), clock, &trace) {}
+      : simulated(rig, faults, seed, clock, &trace) {
+    simulated.set_show(kStart + std::chrono::seconds(1), std::chrono::seconds(10));
+  }
 
   void run_until(Duration since_start) { simulated.advance_to(kStart + since_start); }
   void run_for(Duration duration) { simulated.advance_to(clock.now() + duration); }

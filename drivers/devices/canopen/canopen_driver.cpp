@@ -17,6 +17,7 @@ constexpr std::size_t kMostFrames = 4;  // of one operation
 constexpr int kFramesPerStep = 256;     // a flood must not keep us from sending
 constexpr Duration kSilence = milliseconds(2500);
 constexpr Duration kLongestTurnaround = milliseconds(5);
+constexpr Duration kNodeHeartbeatPeriod = milliseconds(1000);
 constexpr Duration kMargin = milliseconds(10);  // scheduling of the machine, a late node
 
 constexpr std::uint8_t kBootUp = 0;
@@ -55,6 +56,19 @@ Duration CanopenDriver::preload_time(int channels) const {
 Duration CanopenDriver::status_time() const { return port_.wire_time(canopen::status_pdo_shape()); }
 
 Duration CanopenDriver::latch_time() const { return port_.wire_time(canopen::sync(kLastSequence)); }
+
+Duration CanopenDriver::heartbeat_time() const { return port_.wire_time(canopen::controller_heartbeat()); }
+
+Duration CanopenDriver::node_heartbeats_time() const {
+  const auto periods = static_cast<Duration::rep>(kNodeHeartbeatPeriod / kHeartbeatPeriod);
+  return static_cast<Duration::rep>(nodes_.size()) * heartbeat_time() / periods;  // of the same length
+}
+
+Duration CanopenDriver::upload_time() const {
+  Duration sum{};
+  for (const CanFrame& frame : canopen::look_entry(1, Look{})) sum += port_.wire_time(frame);
+  return sum;
+}
 
 bool CanopenDriver::ready() const { return outbox_.empty() && port_.queued() + kMostFrames <= kWindow; }
 

@@ -29,6 +29,9 @@ class CanopenDriver final : public Driver {
   /// One node's TPDO: a single SYNC asks all of them.
   [[nodiscard]] Duration status_time() const override;
   [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] Duration heartbeat_time() const override;
+  [[nodiscard]] Duration node_heartbeats_time() const override;
+  [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override;
 
   SendStatus start(Instant now) override;

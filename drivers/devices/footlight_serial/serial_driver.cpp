@@ -18,7 +18,6 @@ constexpr Duration kTurnaround = milliseconds(2);  // longest, of a node
 constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, an adapter's latency, a late node
 constexpr Duration kLongestMargin = milliseconds(40);
 constexpr Duration kForgetLate = milliseconds(5000);
-constexpr std::size_t kLatchBody = 4;
 constexpr int kReadsPerStep = 64;  // a flood must not keep us from sending
 
 }  // namespace
@@ -41,7 +40,13 @@ Duration SerialDriver::status_time() const {
   return port_.wire_time(frame_length(0)) + kTurnaround + port_.wire_time(frame_length(footlight_serial::kStatusBody));
 }
 
-Duration SerialDriver::latch_time() const { return port_.wire_time(frame_length(kLatchBody)); }
+Duration SerialDriver::latch_time() const { return wire_time(footlight_serial::latch(plan_byte_, 1)); }
+
+Duration SerialDriver::heartbeat_time() const { return wire_time(footlight_serial::heartbeat(plan_byte_, 0)); }
+
+Duration SerialDriver::upload_time() const { return wire_time(footlight_serial::look_entry(plan_byte_, 1, Look{})); }
+
+Duration SerialDriver::wire_time(const Frame& frame) const { return port_.wire_time(frame_length(frame.body.size())); }
 
 SendStatus SerialDriver::start(Instant /*now*/) { return SendStatus::accepted; }
 

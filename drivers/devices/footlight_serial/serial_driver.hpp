@@ -27,6 +27,8 @@ class SerialDriver final : public Driver {
   [[nodiscard]] Duration preload_time(int channels) const override;
   [[nodiscard]] Duration status_time() const override;
   [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] Duration heartbeat_time() const override;
+  [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override { return !line_taken_; }
 
   SendStatus start(Instant now) override;
@@ -47,6 +49,7 @@ class SerialDriver final : public Driver {
     std::uint16_t crc = 0;
   };
 
+  [[nodiscard]] Duration wire_time(const footlight_serial::Frame& frame) const;
   SendStatus send(const footlight_serial::Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                   Instant now);
   void hear(const footlight_serial::Frame& frame, Instant now, EventSink& events);

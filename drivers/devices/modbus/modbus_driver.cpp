@@ -47,6 +47,16 @@ Duration ModbusDriver::latch_time() const {
   return sum;
 }
 
+Duration ModbusDriver::heartbeat_time() const {
+  if (!profile_.heartbeat_register) return {};
+  return port_.wire_time(modbus::heartbeat(profile_, kBroadcast, 0));
+}
+
+Duration ModbusDriver::upload_time() const {
+  if (!profile_.look_table_register) return {};
+  return port_.wire_time(modbus::look_entry(profile_, kBroadcast, 1, Look{}));
+}
+
 bool ModbusDriver::ready() const { return !under_way_ && jobs_.empty() && !port_.busy(); }
 
 SendStatus ModbusDriver::start(Instant /*now*/) { return SendStatus::accepted; }

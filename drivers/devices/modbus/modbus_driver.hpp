@@ -33,6 +33,8 @@ class ModbusDriver final : public Driver {
   [[nodiscard]] Duration status_time() const override;
   /// Until the last node has it; without a latch register every node's preload.
   [[nodiscard]] Duration latch_time() const override;
+  [[nodiscard]] Duration heartbeat_time() const override;
+  [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override;
 
   SendStatus start(Instant now) override;
