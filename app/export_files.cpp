@@ -150,15 +150,15 @@ std::string marks_csv(const Plan& plan, const Show& show) {
 }
 
 std::string formations_csv(const Plan& plan) {
-  std::string out = "formation,count,time_s,frame,performer,col,row\n";
+  std::string out = "formation,count,time_s,frame,performer,col,row,key\n";
   for (const Formation& formation : plan.formations) {
     const std::string start = field(formation.id) + "," + exact(tidy_count(formation.count)) + "," +
                               exact_seconds(formation.time) + "," +
                               (formation.frame ? std::to_string(*formation.frame) : "") + ",";
     for (std::size_t p = 0; p < formation.cells.size(); ++p) {
       const Cell cell = plan.stage.grid.cell(formation.cells[p]);
-      out +=
-          start + field(plan.performers[p]) + "," + std::to_string(cell.column) + "," + std::to_string(cell.row) + "\n";
+      out += start + field(plan.performers[p]) + "," + std::to_string(cell.column) + "," + std::to_string(cell.row) +
+             (formation.key ? ",1\n" : ",0\n");
     }
   }
   return out;

@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/numbers.hpp"
+#include "app/plan_summary.hpp"
 #include "app/text_table.hpp"
 #include "core/check.hpp"
+#include "planner/manual_work.hpp"
 
 namespace footlight::app {
 namespace {
@@ -165,6 +167,9 @@ Json plan_json(const MeasuredPlan& measured) {
            {"lag_s", to_seconds(plan.stage.lag)},
            {"planning_s", number(measured.planning_s)}};
   out.update(figures(plan, measured.measures.show, lag_of(measured, std::nullopt)));
+  const planner::ManualWork work = planner::manual_work(plan);
+  out["mwskf"] = work.formations_share();
+  out["mwpft"] = work.transitions_share();
   out["sections"] = Json::array();
   for (std::size_t i = 0; i < measured.measures.sections.size() && i < plan.sections.size(); ++i) {
     Json section{{"name", plan.sections[i].name}};
@@ -204,7 +209,8 @@ std::string measure_text(const std::vector<MeasuredPlan>& plans) {
     tables.add(plan.sections[i].name, measured, i);
   }
   tables.add("show", measured, std::nullopt);
-  return tables.to_text() + (measured.planning_s ? fmt::format("planned in {:.2f} s\n", *measured.planning_s) : "") +
+  return tables.to_text() + by_hand_text(plan) +
+         (measured.planning_s ? fmt::format("planned in {:.2f} s\n", *measured.planning_s) : "") +
          (plan.valid ? "" : "The plan is not valid: it breaks its limits.\n");
 }
 

@@ -10,6 +10,7 @@
 
 #include "app/numbers.hpp"
 #include "app/text_table.hpp"
+#include "planner/manual_work.hpp"
 #include "planner/measure.hpp"
 
 namespace footlight::app {
@@ -120,6 +121,15 @@ std::string shortest_text(const Show& show, const planner::Planned& planned) {
   return out;
 }
 
+std::string by_hand_text(const Plan& plan) {
+  const planner::ManualWork work = planner::manual_work(plan);
+  if (work.moved == 0 && work.pinned == 0) return "";
+  return fmt::format(
+      "by hand: {} of {} places in key formations (MWSKF {:.3g} %), {} of {} assignments (MWPFT {:.3g} %)\n",
+      work.moved, work.places, 100 * work.formations_share(), work.pinned, work.assignments,
+      100 * work.transitions_share());
+}
+
 std::string plan_text(const Show& show, const planner::Planned& planned) {
   const Plan& plan = planned.plan;
   const auto measures = walks_of(plan);
@@ -142,6 +152,7 @@ std::string plan_text(const Show& show, const planner::Planned& planned) {
   for (const PlanSection& section : plan.sections) {
     for (const std::string& text : section.notes) notes += fmt::format("section {}: {}\n", section.name, text);
   }
+  notes += by_hand_text(plan);
   notes += shortest_text(show, planned);
   return out + (notes.empty() ? "" : "\n" + notes);
 }
@@ -156,6 +167,9 @@ std::string plan_json(const Show& show, const planner::Planned& planned) {
            {"performers", plan.performers.size()},
            {"clearance_m", plan.stage.clearance_m},
            {"lag_s", to_seconds(plan.stage.lag)}};
+  const planner::ManualWork work = planner::manual_work(plan);
+  out["mwskf"] = work.formations_share();
+  out["mwpft"] = work.transitions_share();
   add_figures(out, plan, measures.show, sum_of(transitions));
   out["sections"] = Json::array();
   for (std::size_t i = 0; i < plan.sections.size(); ++i) {

@@ -14,6 +14,9 @@ namespace footlight::app {
 [[nodiscard]] std::string plan_text(const Show& show, const planner::Planned& planned);
 [[nodiscard]] std::string plan_json(const Show& show, const planner::Planned& planned);
 
+/// Shares of manual work, a line; empty where nothing was done by hand.
+[[nodiscard]] std::string by_hand_text(const Plan& plan);
+
 /// "section growth: at least 180 counts (it has 224); limited by ...", a line for each section that has one.
 [[nodiscard]] std::string shortest_text(const Show& show, const planner::Planned& planned);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/plan_digest.hpp"
 
-#include "config/sha256.hpp"
+#include "core/sha256.hpp"
 
 namespace footlight::config {
 namespace {

@@ -13,9 +13,9 @@
 #include "config/output_file.hpp"
 #include "config/plan_digest.hpp"
 #include "config/plan_reader.hpp"
-#include "config/sha256.hpp"
 #include "config/sqlite.hpp"
 #include "config/track_code.hpp"
+#include "core/sha256.hpp"
 
 namespace footlight::config {
 namespace {

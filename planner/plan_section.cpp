@@ -2,286 +2,13 @@
 #include "planner/plan_section.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
-#include "planner/formation/cell_shares.hpp"
-#include "planner/formation/formation.hpp"
-#include "planner/formation/placement.hpp"
-#include "planner/formation/sampling.hpp"
-#include "planner/joint/joint_plan.hpp"
-#include "planner/parallel.hpp"
-#include "planner/schedule/chain.hpp"
+#include "planner/picture_section.hpp"
 
 namespace footlight::planner {
 namespace {
-
-/// Key frames are so far apart that everybody could walk this many pitches in between.
-constexpr double kShortestInterval = 2.5;
-/// The same where drawing and walks are planned together: as often as the walk can follow.
-constexpr double kJointInterval = 2.0;
-
-const PictureOptions& picture_options(const Section& section) {
-  if (const auto* video = std::get_if<VideoSource>(&section.from)) return video->picture;
-  return std::get<ImageSource>(section.from).picture;
-}
-const std::string& picture_path(const Section& section) {
-  if (const auto* video = std::get_if<VideoSource>(&section.from)) return video->path;
-  return std::get<ImageSource>(section.from).path;
-}
-
-/// Percentage as people write it: "83 %".
-std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
-
-class PictureSection {
- public:
-  PictureSection(const Show& show, SectionIndex index, const Film& film, const Ways& ways, const Progress& progress)
-      : show_(show),
-        section_(show.sections[index.at()]),
-        index_(index),
-        film_(film),
-        ways_(ways),
-        progress_(progress),
-        grid_(show.stage.grid),
-        people_(static_cast<int>(show.performers.size())) {
-    usable_ = ways.standable();
-    for (const CellIndex cell : show.stage.reserve) {
-      usable_[cell.at()] = 0;
-      if (ways.can_stand(cell)) reserve_.push_back(cell);
-    }
-  }
-
-  Result<SectionPlan> run() {
-    choose_keys();
-    const auto extent = picture_extent(key_masks());
-    if (auto error = place(extent)) return *error;
-    if (!draw_all()) return Error{ErrorKind::interrupted, "stopped while drawing formations"};
-    if (auto error = too_many_people()) return *error;
-    SectionPlan plan;
-    plan.section.notes = notes();
-    describe(plan.section);
-    fill_stations(plan);
-    if (section_.planner.model == PlannerModel::joint && plan.stations.size() > 1) draw_and_walk(plan);
-    if (progress_.stopped()) return Error{ErrorKind::interrupted, "stopped while drawing formations"};
-    return plan;
-  }
-
- private:
-  /// Puts the cells of the joint plan in place of the drawings; what is too large for it stays as it is.
-  void draw_and_walk(SectionPlan& plan) const {
-    const JointTask task{&film_,
-                         &ways_,
-                         &usable_,
-                         reserve_,
-                         placement_.map,
-                         fps_,
-                         keys_.front().time,
-                         keys_,
-                         plan.stations.front().cells,
-                         section_speed(show_, section_),
-                         reserve_.empty() ? std::vector<std::vector<CellIndex>>() : guide(plan.stations)};
-    if (progress_.stopped()) return;
-    auto joint = plan_jointly(task, progress_);
-    if (!joint) return;
-    for_each_index(plan.stations.size() - 1, "formations", progress_, [&](std::size_t n) {
-      Station& station = plan.stations[n + 1];
-      station.cells = std::move(joint->at[n + 1]);
-      station.follows = true;
-      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n + 1].frame)];
-      const auto shares = cell_shares(picture, grid_, placement_.map);
-      station.in_picture =
-          static_cast<int>(std::count_if(station.cells.begin(), station.cells.end(), [&](CellIndex cell) {
-            return usable_[cell.at()] != 0 && shares[cell.at()] > 0;
-          }));
-    });
-  }
-
-  /// The drawings, walked one after the other.
-  [[nodiscard]] std::vector<std::vector<CellIndex>> guide(const std::vector<Station>& stations) const {
-    std::vector<std::vector<CellIndex>> cells;
-    auto chain = walk_through({&show_, &ways_, &stations, show_.stage.clearance_m}, progress_);
-    if (!chain) return cells;
-    for (const Stop& stop : chain->stops) {
-      if (stop.station) cells.push_back(stop.cells);
-    }
-    return cells;
-  }
-
-  void choose_keys() {
-    const bool video = std::holds_alternative<VideoSource>(section_.from);
-    if (!video || film_.frames.size() < 2 || section_.duration_counts <= 0) {
-      keys_ = {{0, section_.start_count, show_.tempo.at(section_.start_count)}};
-      return;
-    }
-    const FilmTime time{section_.start_count, section_.duration_counts, &show_.tempo};
-    fps_ = show_fps(film_, time);
-    if (section_.planner.model == PlannerModel::joint) {
-      keys_ = walking_instants(film_, time, section_.sampling.snap_to_count,
-                               kJointInterval * grid_.pitch_m() / section_speed(show_, section_));
-      return;
-    }
-    keys_ =
-        sample(film_, time, section_.sampling, kShortestInterval * grid_.pitch_m() / section_speed(show_, section_));
-  }
-
-  [[nodiscard]] std::vector<const Mask*> key_masks() const {
-    std::vector<const Mask*> masks;
-    masks.reserve(keys_.size());
-    for (const KeyFrame& key : keys_) masks.push_back(&film_.frames[static_cast<std::size_t>(key.frame)]);
-    return masks;
-  }
-
-  std::optional<Error> place(const std::optional<Box>& extent) {
-    std::int64_t most = -1;
-    const Mask* largest = nullptr;
-    for (const Mask* mask : key_masks()) {
-      const std::int64_t area = picture_area(*mask);
-      if (area > most) {
-        most = area;
-        largest = mask;
-      }
-    }
-    const int usable = static_cast<int>(std::count(usable_.begin(), usable_.end(), 1));
-    const int room = usable + static_cast<int>(reserve_.size());
-    if (room < people_) {
-      return input_error(section_message(
-          show_, index_, fmt::format("{} performers, but the stage has {} cells to stand on", people_, room),
-          "a larger grid, a smaller pitch or fewer performers"));
-    }
-    if (usable == 0) {
-      return input_error(section_message(
-          show_, index_, "no cell is left for the picture beside reserve and blocked cells", "free some cells"));
-    }
-    const Box whole{0, 0, double(film_.width), double(film_.height)};
-    placement_ = place_picture({&show_.stage, &usable_, picture_options(section_).fit, largest, extent.value_or(whole),
-                                std::min(people_, usable)});
-    return std::nullopt;
-  }
-
-  bool draw_all() {
-    const auto ranks = even_ranks(grid_);
-    drawings_.resize(keys_.size());
-    std::vector<CellIndex> middle;
-    const int least = std::max(0, people_ - static_cast<int>(reserve_.size()));
-    const auto draw_one = [&](std::size_t k, std::span<const CellIndex> when_blank) {
-      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[k].frame)];
-      const auto shares = cell_shares(picture, grid_, placement_.map);
-      drawings_[k] = draw({&grid_, &shares, &usable_, &ranks, people_, least, when_blank});
-    };
-    if (!for_each_index(keys_.size(), "formations", progress_, [&](std::size_t k) { draw_one(k, {}); })) return false;
-    // A blank frame without a reserve keeps the picture before it, or the first one after it.
-    for (std::size_t pass = 0; pass < 2; ++pass) {
-      for (std::size_t n = 1; n < keys_.size(); ++n) {
-        const std::size_t k = pass == 0 ? n : keys_.size() - 1 - n;
-        const std::size_t other = pass == 0 ? k - 1 : k + 1;
-        const bool copied = drawings_[k].touched == 0 && !drawings_[k].cells.empty();
-        if (copied && (pass == 0 ? drawn(other) : drawn(other) && !drawn(k))) {
-          draw_one(k, drawings_[other].cells);
-          kept_.resize(keys_.size());
-          kept_[k] = 1;
-        }
-      }
-    }
-    return true;
-  }
-  [[nodiscard]] bool drawn(std::size_t k) const {
-    return drawings_[k].touched > 0 || (k < kept_.size() && kept_[k] != 0);
-  }
-
-  [[nodiscard]] std::optional<Error> too_many_people() const {
-    int hold = 0;
-    for (const Drawing& drawing : drawings_) hold = std::max(hold, drawing.touched);
-    const int reserve = static_cast<int>(reserve_.size());
-    if (hold + reserve >= people_) return std::nullopt;
-    return input_error(
-        section_message(show_, index_,
-                        fmt::format("{} performers, but the largest picture of '{}' holds {} and the reserve {}",
-                                    people_, picture_path(section_), hold, reserve),
-                        fmt::format("at least {} more reserve cells, a larger floor, fit: area, or fewer performers",
-                                    people_ - hold - reserve)));
-  }
-
-  [[nodiscard]] std::vector<std::string> notes() const {
-    std::vector<std::string> notes;
-    if (placement_.drawn_share < 0.9995) {
-      notes.push_back(
-          fmt::format("the picture is drawn at {} of the size that gives everybody a cell: more would not "
-                      "fit on the floor beside reserve and blocked cells",
-                      percent(placement_.drawn_share)));
-    }
-    int fullest = 0;
-    int widened = 0;
-    int most_added = 0;
-    for (const Drawing& drawing : drawings_) {
-      fullest = std::max(fullest, drawing.full);
-      const int added = static_cast<int>(drawing.cells.size()) - std::max(drawing.full, 0);
-      widened += added > 0 ? 1 : 0;
-      most_added = std::max(most_added, added);
-    }
-    if (fullest > people_ * 1.02) {
-      notes.push_back(fmt::format("the largest picture fills {} cells for {} performers: thinned evenly to {}", fullest,
-                                  people_, percent(double(people_) / fullest)));
-    }
-    if (widened > 0 && most_added > people_ / 100) {
-      notes.push_back(
-          fmt::format("{} of {} pictures are widened by up to {} cells: the reserve has no room for who is "
-                      "not in the picture",
-                      widened, drawings_.size(), most_added));
-    }
-    return notes;
-  }
-
-  void describe(PlanSection& section) const {
-    FilmPlacement film;
-    film.path = picture_path(section_);
-    film.first_frame = film_.first_frame;
-    film.last_frame = film_.first_frame + static_cast<int>(film_.frames.size()) - 1;
-    film.show_fps = fps_;
-    film.width = film_.width;
-    film.height = film_.height;
-    film.threshold = film_.threshold;
-    film.inverted = film_.inverted;
-    film.stage_to_frame = placement_.map;
-    section.film = film;
-    section.reserve = show_.stage.reserve;
-  }
-
-  void fill_stations(SectionPlan& plan) const {
-    const auto waiting = waiting_places({&grid_, &reserve_, &drawings_, people_});
-    const bool video = fps_ > 0;
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      Station station;
-      station.section = index_;
-      station.count = keys_[k].count;
-      station.arrive = station.depart = keys_[k].time;
-      if (video) station.frame = film_.first_frame + keys_[k].frame;
-      station.cells = drawings_[k].cells;
-      station.in_picture = drawings_[k].in_picture;
-      station.cells.insert(station.cells.end(), waiting[k].begin(), waiting[k].end());
-      station.exact = !video || k == 0;
-      plan.stations.push_back(std::move(station));
-    }
-    plan.stations.back().depart = std::max(plan.stations.back().arrive, show_.tempo.at(section_.end_count()));
-  }
-
-  const Show& show_;
-  const Section& section_;
-  SectionIndex index_;
-  const Film& film_;
-  const Ways& ways_;
-  const Progress& progress_;
-  const Grid& grid_;
-  int people_;
-  CellFlags usable_;
-  std::vector<CellIndex> reserve_;
-  std::vector<KeyFrame> keys_;
-  double fps_ = 0;
-  Placement placement_;
-  std::vector<Drawing> drawings_;
-  std::vector<char> kept_;
-};
 
 Result<SectionPlan> cells_section(const Show& show, SectionIndex index, const CellsSource& source) {
   const Section& section = show.sections[index.at()];
@@ -320,10 +47,16 @@ double section_speed(const Show& show, const Section& section) {
 }
 
 std::string section_message(const Show& show, SectionIndex section, std::string text, std::string hint) {
+  return message_at(show, show.sections[section.at()].position, fmt::format("sections[{}]", section.value()),
+                    std::move(text), std::move(hint));
+}
+
+std::string message_at(const Show& show, const Position& position, std::string key_path, std::string text,
+                       std::string hint) {
   Diagnostic diagnostic;
-  diagnostic.position = show.sections[section.at()].position;
+  diagnostic.position = position;
   if (diagnostic.position.file.empty()) diagnostic.position.file = show.file;
-  diagnostic.key_path = fmt::format("sections[{}]", section.value());
+  diagnostic.key_path = std::move(key_path);
   diagnostic.text = std::move(text);
   diagnostic.hint = std::move(hint);
   return to_text(diagnostic);
@@ -336,8 +69,8 @@ Result<SectionPlan> plan_section(const Show& show, SectionIndex index, const std
   if (cells == nullptr && (!film || film->frames.empty())) {
     return internal_error("the frames of section '" + section.name + "' are missing");
   }
-  auto plan = cells != nullptr ? cells_section(show, index, *cells)
-                               : PictureSection(show, index, film.value(), ways, progress).run();
+  auto plan =
+      cells != nullptr ? cells_section(show, index, *cells) : plan_pictures(show, index, film.value(), ways, progress);
   if (!plan) return plan;
   plan->section.name = section.name;
   plan->section.start = show.tempo.at(section.start_count);

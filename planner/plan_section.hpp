@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/film.hpp"
@@ -25,6 +26,9 @@ struct Station {
   bool exact = false;            ///< nobody may be elsewhere; else the drawing gives way where walking takes too long
   bool follows = false;          ///< cells[i] is for who stood on cells[i] of the station before
   int in_picture = 0;            ///< how many of the cells are in the picture
+  bool key = true;               ///< a key formation
+  int moved = 0;                 ///< people moved by hand
+  std::vector<std::pair<PerformerIndex, CellIndex>> pins;  ///< who stands where by name
 };
 
 /// What one section asks for, before anybody walks.
@@ -37,6 +41,10 @@ struct SectionPlan {
 [[nodiscard]] double section_speed(const Show& show, const Section& section);
 /// "file:line:col: error: sections[i]: text (hint)"
 [[nodiscard]] std::string section_message(const Show& show, SectionIndex section, std::string text, std::string hint);
+
+/// The same with a place and key of its own.
+[[nodiscard]] std::string message_at(const Show& show, const Position& position, std::string key_path, std::string text,
+                                     std::string hint);
 
 /// Turns a section's source into formations of exactly as many cells as there are performers.
 /// @param film of a video or an image, else absent

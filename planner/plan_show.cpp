@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "planner/by_hand.hpp"
 #include "planner/parallel.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/refusal.hpp"
@@ -92,6 +93,7 @@ class ShowPlanner {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       auto section = plan_section(limits_, SectionIndex::of(s), films_[s], ways, progress_);
       if (!section) return section.error();
+      if (auto error = apply_overrides(show_, SectionIndex::of(s), ways, *section)) return error;
       for (Station& station : section->stations) {
         if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
         stations_.push_back(std::move(station));
@@ -226,6 +228,9 @@ class ShowPlanner {
       formation.frame = station.frame;
       for (std::size_t p = 0; p < show_.performers.size(); ++p) formation.cells.push_back(cell_of(chain, k, p));
       formation.in_picture = station.in_picture - stop.given_way;
+      formation.key = station.key;
+      formation.moved = station.moved;
+      formation.pinned = static_cast<int>(station.pins.size());
       planned_.plan.formations.push_back(std::move(formation));
     }
   }

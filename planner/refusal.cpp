@@ -49,6 +49,15 @@ std::vector<std::optional<FastWalk>> fastest_walks(const Plan& plan) {
 
 std::string count_text(double count) { return fmt::format("{:g}", std::round(count * 100) / 100); }
 
+/// The key formation after its section's first to which a walk leads.
+const Formation* key_inside(const Plan& plan, std::size_t section, const FastWalk& walk) {
+  for (const Formation& formation : plan.formations) {
+    if (formation.section.at() != section || formation.time < walk.to.time) continue;
+    return formation.key && formation.time > plan.sections[section].start ? &formation : nullptr;
+  }
+  return nullptr;
+}
+
 std::string too_fast_text(const Show& show, const Plan& plan, std::size_t section, const FastWalk& walk) {
   const double first = show.tempo.count_at(walk.from.time);
   const double last = show.tempo.count_at(walk.to.time);
@@ -68,10 +77,19 @@ std::string too_fast_text(const Show& show, const Plan& plan, std::size_t sectio
         fmt::format("start the section at count {} or later, or end the one before {:g} count{} earlier",
                     count_text(start + later), later, later == 1 ? "" : "s"));
   }
+  const Formation* key = key_inside(plan, section, walk);
   std::string pace = fmt::format("{:.1f} m/s, {:.1f} times the limit", walk.excess * walk.limit_mps, walk.excess);
   if (walk.excess < 1.05) pace = fmt::format("{:.3g} m/s, above the limit", walk.excess * walk.limit_mps);
   const std::string what = fmt::format("{} between count {} and count {} at {} of {:g} m/s", who, count_text(first),
                                        count_text(last), pace, walk.limit_mps);
+  if (key != nullptr) {
+    return section_message(
+        show, SectionIndex::of(section),
+        fmt::format("the key formation {} at count {} cannot be reached in time: {}", key->id, count_text(key->count),
+                    what),
+        fmt::format("{:g} count{} more before it: another key, a longer section, or less changed by hand", later,
+                    later == 1 ? "" : "s"));
+  }
   const bool held = section > 0 && show.sections[section - 1].hold_counts > 0;
   std::string hint = fmt::format("start the section {:g} count{} later", later, later == 1 ? "" : "s");
   hint += slower >= 1 ? ", " : " or ";

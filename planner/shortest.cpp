@@ -45,19 +45,23 @@ std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain
       last.assign(stop.own.size(), k);
       continue;
     }
+    const auto from_cells = [&](std::size_t j) -> const std::vector<CellIndex>& {
+      return chain.stops[j].exact ? chain.stops[j].cells : chain.stops[j].own;
+    };
     for (std::size_t i = 0; i < stop.own.size(); ++i) {
       if (std::binary_search(show.stage.reserve.begin(), show.stage.reserve.end(), stop.own[i])) continue;
       const Stop& begin = chain.stops[last[i]];
-      const double walk_m = distance(grid.centre(begin.own[i]), grid.centre(stop.own[i]));
+      const double walk_m = distance(grid.centre(from_cells(last[i])[i]), grid.centre(stop.own[i]));
       const double factor = walk_m / (speed * to_seconds(stop.arrive - begin.depart));
       if (factor > tightest.factor) tightest = {factor, i, last[i], k};
       last[i] = k;
     }
+    if (stop.exact) last.assign(stop.own.size(), k);
   }
   if (tightest.factor <= 0 || asked.duration_counts <= 0) return std::nullopt;
   const Stop& from = chain.stops[tightest.from];
   const Stop& to = chain.stops[tightest.to];
-  const CellIndex begin = from.own[tightest.slot];
+  const CellIndex begin = from.exact ? from.cells[tightest.slot] : from.own[tightest.slot];
   const CellIndex end = to.own[tightest.slot];
   Planned::Shortest shortest;
   shortest.counts = std::ceil(asked.duration_counts * tightest.factor);

@@ -92,16 +92,13 @@ double show_fps(const Film& film, const FilmTime& time) {
   return (static_cast<double>(film.frames.size()) - 1) / duration_s;
 }
 
-std::vector<KeyFrame> sample(const Film& film, const FilmTime& time, const Sampling& sampling, double shortest_s) {
-  FL_CHECK(film.frames.size() >= 2 && time.duration_counts > 0);
-  const FilmClock clock(film, time);
-  const Duration shortest = std::max(std::min(seconds(shortest_s), sampling.interval), milliseconds(1));
-  const int last_frame = static_cast<int>(film.frames.size()) - 1;
-  const KeyFrame end{last_frame, time.start_count + time.duration_counts,
-                     time.tempo->at(time.start_count + time.duration_counts)};
-  std::vector<KeyFrame> keys{{0, time.start_count, time.tempo->at(time.start_count)}};
-  std::uint64_t last_hash = average_hash(film.frames[0]);
-  for (int f = 1; f < last_frame; ++f) {
+namespace {
+
+/// Appends what is sampled from the last key on, and `end`.
+void sample_until(const KeyFrame& end, const Film& film, const FilmClock& clock, const Sampling& sampling,
+                  Duration shortest, std::vector<KeyFrame>& keys) {
+  std::uint64_t last_hash = average_hash(film.frames[static_cast<std::size_t>(keys.back().frame)]);
+  for (int f = keys.back().frame + 1; f < end.frame; ++f) {
     const KeyFrame& last = keys.back();
     const Instant now = clock.at_frame(f);
     if (now < last.time + shortest) continue;
@@ -117,7 +114,65 @@ std::vector<KeyFrame> sample(const Film& film, const FilmTime& time, const Sampl
     f = std::max(f, key.frame);
   }
   keys.push_back(end);
+}
+
+}  // namespace
+
+std::vector<KeyFrame> sample(const Film& film, const FilmTime& time, const Sampling& sampling, double shortest_s,
+                             std::span<const KeyFrame> given) {
+  FL_CHECK(film.frames.size() >= 2 && time.duration_counts > 0);
+  const FilmClock clock(film, time);
+  const Duration shortest = std::max(std::min(seconds(shortest_s), sampling.interval), milliseconds(1));
+  const KeyFrame end{static_cast<int>(film.frames.size()) - 1, time.start_count + time.duration_counts,
+                     time.tempo->at(time.start_count + time.duration_counts)};
+  std::vector<KeyFrame> keys{{0, time.start_count, time.tempo->at(time.start_count)}};
+  for (const KeyFrame& key : given) {
+    if (key.time > keys.back().time && key.time < end.time) {
+      sample_until(key, film, clock, sampling, shortest, keys);
+    } else if (key.time == keys.back().time) {
+      keys.back().given = true;
+    }
+  }
+  sample_until(end, film, clock, sampling, shortest, keys);
+  keys.back().given = !given.empty() && given.back().time == end.time;
   return keys;
+}
+
+std::vector<KeyFrame> with_given(const std::vector<KeyFrame>& sampled, std::span<const KeyFrame> given,
+                                 double shortest_s) {
+  std::vector<KeyFrame> out;
+  std::size_t next = 0;
+  const auto near = [&](const KeyFrame& key, const KeyFrame& one) {
+    return std::abs(to_seconds(key.time - one.time)) < shortest_s;
+  };
+  for (const KeyFrame& key : sampled) {
+    for (; next < given.size() && given[next].time < key.time; ++next) {
+      if (given[next].time > out.back().time) out.push_back(given[next]);
+    }
+    const bool same = next < given.size() && given[next].time == key.time;
+    const bool crowded = (next < given.size() && near(given[next], key)) || (next > 0 && near(given[next - 1], key));
+    const bool end = key == sampled.front() || key == sampled.back();
+    if (!same && crowded && !end) continue;
+    out.push_back(key);
+    out.back().given = same;
+  }
+  return out;
+}
+
+std::optional<KeyFrame> given_key(const Film& film, const FilmTime& time, const SectionKey& key) {
+  const FilmClock clock(film, time);
+  const double end = time.start_count + time.duration_counts;
+  KeyFrame out;
+  if (key.count) {
+    if (*key.count < time.start_count || *key.count > end + 1e-6) return std::nullopt;
+    out = clock.key_at_count(std::min(*key.count, end));
+  } else {
+    const double frame = std::round(key.film_s * film.fps) - film.first_frame;
+    if (frame < 0 || frame >= static_cast<double>(film.frames.size())) return std::nullopt;
+    out = clock.key_at_frame(static_cast<int>(frame));
+  }
+  out.given = true;
+  return out;
 }
 
 }  // namespace footlight::planner

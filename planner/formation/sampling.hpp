@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/film.hpp"
@@ -18,6 +20,7 @@ struct KeyFrame {
   int frame = 0;  ///< index into Film::frames
   double count = 1;
   Instant time;
+  bool given = false;  ///< by the director, so that it is exact
 
   friend bool operator==(const KeyFrame&, const KeyFrame&) = default;
 };
@@ -35,10 +38,19 @@ struct FilmTime {
 /// Key frames of a film, Li 2020 Eq. 3-4: the next one is the first frame whose average hash differs from the last key
 /// frame's in more than `sampling.hash` of its bits, or the one `sampling.interval` of show time later, whichever comes
 /// first. The first and the last frame are key frames; the others stand on whole counts when asked for.
+/// @param given the director's key frames, ascending: from each of them sampling begins anew
 /// @param film at least two frames  @param shortest_s no two key frames are nearer than this (or than the sampling
 /// interval), so that people can walk at all; a section shorter than that has two key frames
 /// @return ascending, at least two. O(pixels of the film / 64)
 [[nodiscard]] std::vector<KeyFrame> sample(const Film& film, const FilmTime& time, const Sampling& sampling,
-                                           double shortest_s);
+                                           double shortest_s, std::span<const KeyFrame> given = {});
+
+/// Puts the director's key frames among sampled ones, in place of those nearer than `shortest_s` to one of them; the
+/// first and the last stay. @param sampled, given ascending
+[[nodiscard]] std::vector<KeyFrame> with_given(const std::vector<KeyFrame>& sampled, std::span<const KeyFrame> given,
+                                               double shortest_s);
+
+/// The key frame at an instant that the director named. Nothing when the film is not on show then.
+[[nodiscard]] std::optional<KeyFrame> given_key(const Film& film, const FilmTime& time, const SectionKey& key);
 
 }  // namespace footlight::planner

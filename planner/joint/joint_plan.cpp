@@ -25,6 +25,8 @@ constexpr double kWalkCost = 0.2;
 constexpr double kScale = 1000;
 /// What it is worth to be where the guide has somebody, in intervals.
 constexpr double kGuideWorth = 100;
+/// The same at a key formation of the director's: more than everything else in a few intervals.
+constexpr double kKeyWorth = 900;
 /// Intervals that are looked ahead.
 constexpr std::size_t kHorizon = 12;
 /// What a place at the end of them is worth, in intervals.
@@ -140,8 +142,11 @@ class JointPlanner {
     JointPlan plan{{task_.first}};
     for (std::size_t k = 0; k < all;) {
       FlowTask flow;
-      const std::size_t end = std::min(all, k + kHorizon);
-      const std::size_t go = end == all ? end : k + kHorizon / 2;
+      std::size_t end = k + 1;
+      while (end < std::min(all, k + kHorizon) && !task_.instants[end].given) ++end;
+      // At the director's key formations everybody is where the guide has somebody; nobody looks beyond them.
+      const bool to_key = task_.instants[end].given;
+      const std::size_t go = end == all || to_key ? end : k + kHorizon / 2;
       flow.cells = waits_.size();
       flow.start = plan.at.back();
       for (std::size_t n = k; n < end; ++n)
@@ -201,7 +206,8 @@ class JointPlanner {
       cost[c] = whole(-kEndWorth * people_ * gain);
     }
     if (!task_.guide.empty()) {
-      for (const CellIndex cell : task_.guide[instant]) cost[cell.at()] -= whole(kGuideWorth);
+      const double worth = task_.instants[instant].given ? kKeyWorth : kGuideWorth;
+      for (const CellIndex cell : task_.guide[instant]) cost[cell.at()] -= whole(worth);
     }
     return cost;
   }

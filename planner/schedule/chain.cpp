@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/shift.hpp"
-#include "planner/schedule/snap.hpp"
+#include "planner/schedule/step.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr double kRounding_m = 1e-9;
 /// On the way around blocked cells there is a stop whenever somebody may have walked so many pitches.
 constexpr double kViaPitches = 4.5;
-/// Rounds in which only one of two people in conflict has to wait.
-constexpr int kPatience = 4;
 /// Cell by cell around blocked cells: room in each step for the rounding of instants, and steps walked at once.
 constexpr double kStepMargin = 1.001;
 constexpr std::size_t kStride = 4;
@@ -31,6 +30,10 @@ class ChainBuilder {
         stations_(*task.stations),
         reserve_(static_cast<std::size_t>(grid_.size()), 0) {
     for (const CellIndex cell : task.show->stage.reserve) reserve_[cell.at()] = 1;
+    StageHash floor("floor");
+    floor.add(grid_.kind()).add(grid_.columns()).add(grid_.rows()).add(grid_.pitch_m());
+    floor.list(task.show->stage.blocked).add(task.show->stage.clearance_m);
+    floor_ = floor.key();
   }
 
   std::optional<Chain> run() {
@@ -45,7 +48,21 @@ class ChainBuilder {
   bool pair_all() {
     pairings_.resize(stations_.size() - 1);
     return for_each_index(pairings_.size(), "pairing", progress_,
-                          [&](std::size_t k) { pairings_[k] = pair(stations_[k], stations_[k + 1]); });
+                          [&](std::size_t k) { pairings_[k] = recalled_pair(stations_[k], stations_[k + 1]); });
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> recalled_pair(const Station& from, const Station& to) const {
+    const PlannerOptions& options = task_.show->sections[to.section.at()].planner;
+    if (task_.counts == nullptr && task_.stages == nullptr) return pair(from, to);
+    StageHash hash("pairing");
+    hash.add(floor_).list(task_.show->stage.reserve).list(from.cells).list(to.cells);
+    hash.add(to.follows).add(from.pinned && to.pinned).add(options.model).add(options.layers).add(options.region_size);
+    hash.add(options.region_variance_m2).add(options.cost);
+    return recall(
+        task_.stages, hash.key(), task_.counts == nullptr ? nullptr : &task_.counts->pairings,
+        [](StageReader& reader) { return reader.list<std::uint32_t>(); },
+        [](const std::vector<std::uint32_t>& target_of) { return StageWriter().list(target_of).take(); },
+        [&] { return pair(from, to); });
   }
 
   /// Who waits in the reserve before and after stays where she is; the others as the section asks for.
@@ -86,15 +103,21 @@ class ChainBuilder {
     return target_of;
   }
 
+  /// Slots are numbered anew at each exact formation.
   void follow_slots() {
     const std::size_t people = stations_.front().cells.size();
     slots_.assign(stations_.size(), std::vector<CellIndex>(people));
-    for (std::uint32_t slot = 0; slot < people; ++slot) {
-      std::uint32_t at = slot;
-      for (std::size_t s = 0; s < stations_.size(); ++s) {
-        slots_[s][slot] = stations_[s].cells[at];
-        if (s + 1 < stations_.size()) at = pairings_[s][at];
+    place_of_.resize(stations_.size());
+    std::vector<std::uint32_t> at(people);
+    std::iota(at.begin(), at.end(), 0U);
+    for (std::size_t s = 0; s < stations_.size(); ++s) {
+      for (std::uint32_t slot = 0; slot < people; ++slot) {
+        if (s > 0) at[slot] = pairings_[s - 1][at[slot]];
+        slots_[s][slot] = stations_[s].cells[at[slot]];
       }
+      if (s > 0 && !stations_[s].exact) continue;
+      place_of_[s] = at;
+      std::iota(at.begin(), at.end(), 0U);
     }
   }
 
@@ -109,6 +132,8 @@ class ChainBuilder {
     stop.station = s;
     stop.section = station.section;
     stop.own = slots_[s];
+    stop.exact = station.exact || s == 0;
+    if (stop.exact) stop.cells = station.cells;
     chain_.stops.push_back(std::move(stop));
   }
 
@@ -124,7 +149,8 @@ class ChainBuilder {
     if (ways_.open() || !stations_[s].exact) return;
     bool straight = true;
     for (std::size_t i = 0; i < slots_[s].size() && straight; ++i) {
-      straight = ways_.straight(grid_.centre(slots_[s - 1][i]), grid_.centre(slots_[s][i]));
+      const CellIndex from = chain_.stops.back().exact ? chain_.stops.back().cells[i] : slots_[s - 1][i];
+      straight = ways_.straight(grid_.centre(from), grid_.centre(slots_[s][i]));
     }
     const Show& show = *task_.show;
     const Instant start = stations_[s - 1].depart;
@@ -142,88 +168,97 @@ class ChainBuilder {
     }
   }
 
-  [[nodiscard]] bool exact(const Stop& stop) const { return stop.station && stations_[*stop.station].exact; }
   [[nodiscard]] bool ends_section(const Stop& stop) const {
     return stop.station && (*stop.station + 1 == stations_.size() ||
                             stations_[*stop.station + 1].section != stations_[*stop.station].section);
   }
 
+  /// Stretches between exact formations do not depend on each other.
   bool pace() {
-    std::vector<PaceInstant> instants;
-    std::vector<std::size_t> next_formation(chain_.stops.size());
-    for (std::size_t k = chain_.stops.size(); k-- > 0;) {
-      next_formation[k] = chain_.stops[k].station ? k : next_formation[k + 1];
+    chain_.legs.resize(chain_.stops.size() - 1);
+    std::vector<std::size_t> ends{0};
+    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
+      if (chain_.stops[k].exact || k + 1 == chain_.stops.size()) ends.push_back(k);
     }
-    for (std::size_t k = 0; k < chain_.stops.size(); ++k) {
+    return for_each_index(ends.size() - 1, "walks", progress_,
+                          [&](std::size_t n) { walk_stretch(ends[n], ends[n + 1]); });
+  }
+
+  /// The ideal tracks from `first` to `last`, numbered as in between.
+  [[nodiscard]] std::vector<PaceInstant> instants_of(std::size_t first, std::size_t last) const {
+    std::vector<PaceInstant> instants(last - first + 1);
+    const std::vector<CellIndex>* heading = &chain_.stops[last].own;
+    for (std::size_t k = last + 1; k-- > first;) {
       const Stop& stop = chain_.stops[k];
       // On the way everybody heads for the formation at its end.
-      instants.push_back({chain_.stops[next_formation[k]].own, exact(stop) || ends_section(stop) || !stop.station,
-                          k < chain_.longest_m.size() ? chain_.longest_m[k] : 0.0});
+      if (stop.station) heading = k == first ? &stop.cells : &stop.own;
+      instants[k - first] = {*heading, stop.exact || ends_section(stop) || !stop.station,
+                             k < chain_.longest_m.size() ? chain_.longest_m[k] : 0.0};
     }
+    return instants;
+  }
+
+  void walk_stretch(std::size_t first, std::size_t last) {
+    const std::vector<PaceInstant> instants = instants_of(first, last);
     auto wanted = leave_early(ways_, instants, reserve_);
-    chain_.stops.front().cells = chain_.stops.front().own;
-    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
-      if (progress_.stopped()) return false;
-      progress_.tell("walks", static_cast<double>(k) / static_cast<double>(chain_.stops.size()));
-      Stop& stop = chain_.stops[k];
-      if (exact(stop)) {
-        stop.cells = stop.own;
-        chain_.legs.push_back(settle(leg_to(k)));
-        continue;
-      }
-      if (!stop.station) aim_on_the_way(k, next_formation[k], wanted[k]);
-      const std::span<const Wanted> onward =
-          k + 1 < wanted.size() ? std::span<const Wanted>(wanted[k + 1]) : std::span<const Wanted>();
-      step(k, {&ways_,
-               chain_.stops[k - 1].cells,
-               instants[k].own,
-               wanted[k],
-               onward,
-               chain_.longest_m[k - 1],
-               instants[k].longest_m,
-               {}});
-      for (std::size_t i = 0; i < stop.own.size(); ++i) {
-        stop.given_way += stop.cells[i] != stop.own[i] && reserve_[stop.own[i].at()] == 0 ? 1 : 0;
-      }
+    // How far from their places in an exact formation at the end people may be at each stop.
+    std::vector<double> reach_m(instants.size(), 0.0);
+    for (std::size_t n = instants.size() - 1; n-- > 0;) {
+      const double longest_m = instants[n].longest_m;
+      reach_m[n] = n + 2 == instants.size() ? longest_m : reach_m[n + 1] + paced_m(longest_m, grid_.pitch_m());
     }
-    progress_.tell("walks", 1);
-    return true;
-  }
-
-  [[nodiscard]] LegTask leg_to(std::size_t k) const {
-    return {&ways_, chain_.stops[k - 1].cells, chain_.stops[k].cells, chain_.longest_m[k - 1], task_.clearance_m};
-  }
-
-  /// Snaps and pairs; who conflicts waits, and whoever conflicts with those, until nobody does. If all waited nobody
-  /// would, so it ends.
-  void step(std::size_t k, SnapTask snap_task) {
-    std::vector<char> hold(snap_task.now.size(), 0);
-    for (int round = 0;; ++round) {
-      snap_task.hold = hold;
-      chain_.stops[k].cells = snap(snap_task);
-      Leg leg = settle(leg_to(k));
-      if (leg.conflicts.empty()) {
-        chain_.legs.push_back(std::move(leg));
-        return;
-      }
-      bool added = false;
-      for (const auto& [a, b] : leg.conflicts) {
-        // The one with the shorter walk waits; after a few rounds both do.
-        const bool a_waits = walk_m(k, leg, a) <= walk_m(k, leg, b);
-        for (const std::uint32_t slot : {a_waits ? a : b, a_waits ? b : a}) {
-          if (hold[slot] != 0) continue;
-          hold[slot] = 1;
-          added = true;
-          if (round < kPatience) break;
+    for (std::size_t k = first + 1; k <= last && !progress_.stopped(); ++k) {
+      Stop& stop = chain_.stops[k];
+      const std::size_t n = k - first;
+      if (!stop.station) aim_on_the_way(k, heading_of(k), wanted[n]);
+      StepTask task;
+      task.snap.ways = &ways_;
+      task.snap.now = chain_.stops[k - 1].cells;
+      task.snap.own = instants[n].own;
+      task.snap.wanted = wanted[n];
+      task.snap.longest_m = chain_.longest_m[k - 1];
+      task.snap.onward_m = instants[n].longest_m;
+      if (k < last) task.snap.onward = wanted[n + 1];
+      const std::vector<CellIndex> goals =
+          chain_.stops[last].exact && k < last ? binding_goals(k, last, reach_m[n]) : std::vector<CellIndex>();
+      task.snap.goal = goals;
+      task.snap.goal_m = reach_m[n];
+      task.exact = stop.exact;
+      task.clearance_m = task_.clearance_m;
+      Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
+      if (stop.exact) {
+        for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];
+      } else {
+        stop.cells = std::move(step.cells);
+        for (std::size_t i = 0; i < stop.own.size(); ++i) {
+          stop.given_way += stop.cells[i] != stop.own[i] && reserve_[stop.own[i].at()] == 0 ? 1 : 0;
         }
       }
-      if (!added) std::fill(hold.begin(), hold.end(), char{1});
+      chain_.legs[k - 1] = std::move(step.leg);
     }
   }
 
-  [[nodiscard]] double walk_m(std::size_t k, const Leg& leg, std::uint32_t slot) const {
-    return distance(grid_.centre(chain_.stops[k - 1].cells[slot]),
-                    grid_.centre(chain_.stops[k].cells[leg.target_of[slot]]));
+  [[nodiscard]] std::size_t heading_of(std::size_t k) const {
+    while (!chain_.stops[k].station) ++k;
+    return k;
+  }
+
+  /// Where the slots must be in the exact formation `last`, for those who could walk too far away from it now; empty
+  /// when nobody could.
+  [[nodiscard]] std::vector<CellIndex> binding_goals(std::size_t k, std::size_t last, double reach_m) const {
+    const std::vector<CellIndex>& now = chain_.stops[k - 1].cells;
+    std::vector<CellIndex> goals = chain_.stops[last].own;
+    bool any = false;
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      const double away_m = distance(grid_.centre(now[i]), grid_.centre(goals[i]));
+      if (away_m + chain_.longest_m[k - 1] <= reach_m) {
+        goals[i] = kNoGoal;
+      } else {
+        any = true;
+      }
+    }
+    if (!any) goals.clear();
+    return goals;
   }
 
   static bool clear(const Leg& leg) { return leg.walkable && leg.conflicts.empty(); }
@@ -243,7 +278,7 @@ class ChainBuilder {
         if (chain_.stops[end].station) break;
       }
       const std::size_t before = whole.stops.size();
-      if (good || !exact(chain_.stops[end]) || !shift_to(chain_.stops[end], whole)) {
+      if (good || !chain_.stops[end].exact || !shift_to(chain_.stops[end], whole)) {
         whole.stops.resize(before);
         whole.legs.resize(before - 1);
         whole.longest_m.resize(before - 1);
@@ -266,7 +301,7 @@ class ChainBuilder {
     const double total_s = to_seconds(goal.arrive - start.depart);
     const double speed = section_speed(show, show.sections[goal.section.at()]);
     const int most = static_cast<int>(total_s * speed / (kStepMargin * grid_.pitch_m()));
-    const auto places = shift({&ways_, start.cells, goal.own, most});
+    const auto places = shift({&ways_, start.cells, goal.cells, most});
     if (!places) return false;
     const std::size_t steps = places->size() - 1;
     for (std::size_t step = 0; step < steps;) {
@@ -285,8 +320,8 @@ class ChainBuilder {
         Leg leg = settle({&ways_, (*places)[step], (*places)[next], longest_m, task_.clearance_m});
         if (!clear(leg)) continue;
         found = true;
-        stop.cells = next < steps ? (*places)[next] : goal.own;
-        if (next == steps) reorder((*places)[next], goal.own, leg.target_of);
+        stop.cells = next < steps ? (*places)[next] : goal.cells;
+        if (next == steps) reorder((*places)[next], goal.cells, leg.target_of);
         whole.stops.push_back(std::move(stop));
         whole.legs.push_back(std::move(leg));
         whole.longest_m.push_back(longest_m);
@@ -326,6 +361,8 @@ class ChainBuilder {
   CellFlags reserve_;
   std::vector<std::vector<std::uint32_t>> pairings_;
   std::vector<std::vector<CellIndex>> slots_;
+  std::vector<std::vector<std::uint32_t>> place_of_;  // of exact stations: place in the list of each slot before it
+  StageKey floor_{};
   Chain chain_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "planner/plan_section.hpp"
 #include "planner/schedule/walks.hpp"
+#include "planner/stages.hpp"
 
 namespace footlight::planner {
 
@@ -15,6 +16,12 @@ struct ChainTask {
   const Ways* ways = nullptr;
   const std::vector<Station>* stations = nullptr;
   double clearance_m = 0.5;  ///< that holds for every two people
+  Stages* stages = nullptr;  ///< of an earlier planning; nothing: all of it is planned anew
+  struct Counts {
+    StageCount pairings;
+    StageCount walks;
+  };
+  Counts* counts = nullptr;  ///< of stages, to add to
 };
 
 /// An instant at which everybody stands on a cell.
@@ -24,9 +31,12 @@ struct Stop {
   Instant depart;
   std::optional<std::size_t> station;  ///< absent: on the way around blocked cells
   SectionIndex section;                ///< whose limits hold on the way here
-  std::vector<CellIndex> own;          ///< ideal cell of each slot; empty on the way
-  std::vector<CellIndex> cells;        ///< of each slot, as it can be walked; distinct
-  int given_way = 0;                   ///< slots in the picture whose cell is not the own one
+  /// A slot is a place in the formations that one person at a time fills. Slots are numbered anew at every exact
+  /// formation, in the order of the station's cells, so that what follows depends on nothing before it.
+  bool exact = false;
+  std::vector<CellIndex> own;    ///< ideal cell of each slot, numbered as before; empty on the way
+  std::vector<CellIndex> cells;  ///< of each slot, as it can be walked, numbered as from here on; distinct
+  int given_way = 0;             ///< slots in the picture whose cell is not the own one
 };
 
 /// Who goes where: position 0.. in `cells` of one stop -> position in `cells` of the next.
@@ -36,9 +46,9 @@ struct Chain {
   std::vector<double> longest_m;  ///< for each leg, how far anybody may walk
 };
 
-/// From formations to walks: ideal pairings of neighbours (parallel), slots through the show, pace, snap, then for each
-/// interval the final pairing (parallel). Targets of a pinned station are exchanged like any other; `plan_show` puts
-/// the named people on them.
+/// From formations to walks: ideal pairings of neighbours (parallel), slots from each exact formation to the next,
+/// pace, snap, and for each interval the final pairing; stretches between exact formations are independent (parallel).
+/// Targets of a pinned station are exchanged like any other; `plan_show` puts the named people on them.
 /// @return nothing when stopped. Byte-equal for any number of threads.
 [[nodiscard]] std::optional<Chain> walk_through(const ChainTask& task, const Progress& progress);
 

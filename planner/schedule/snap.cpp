@@ -9,6 +9,9 @@
 namespace footlight::planner {
 namespace {
 
+/// What it costs to stand where the next exact formation cannot be reached from, before it is weighed by how much.
+constexpr double kTooFarFromGoal = 1000;
+
 class Snapper {
  public:
   explicit Snapper(const SnapTask& task)
@@ -31,7 +34,7 @@ class Snapper {
     for (std::size_t i = 0; i < people; ++i) {
       if (holds(i)) {
         next[i] = task_.now[i];
-      } else if (task_.wanted[i].own && taken_[task_.own[i].at()] == 0 && reachable(i, task_.own[i])) {
+      } else if (on_time(i)) {
         next[i] = task_.own[i];
         taken_[next[i].at()] = 1;
       } else {
@@ -60,9 +63,24 @@ class Snapper {
     return cell == task_.now[slot] || (distance(from, to) <= task_.longest_m && ways_.straight(from, to));
   }
 
+  [[nodiscard]] bool on_time(std::size_t slot) const {
+    const CellIndex own = task_.own[slot];
+    return task_.wanted[slot].own && taken_[own.at()] == 0 && beyond_goal_m(slot, grid_.centre(own)) <= 0 &&
+           reachable(slot, own);
+  }
+
+  /// How much too far a place is from where the slot must be at the next exact formation; straight, so that a way
+  /// around blocked cells may be longer.
+  [[nodiscard]] double beyond_goal_m(std::size_t slot, Point at) const {
+    if (task_.goal.empty() || task_.goal[slot] == kNoGoal) return 0;
+    return std::max(0.0, distance(at, grid_.centre(task_.goal[slot])) - task_.goal_m);
+  }
+
   [[nodiscard]] Point aim(std::size_t slot) const {
     const Point from = grid_.centre(task_.now[slot]);
-    return ways_.toward(from, task_.wanted[slot].at, paced_m(task_.longest_m, pitch_)).at;
+    const Point there = ways_.toward(from, task_.wanted[slot].at, paced_m(task_.longest_m, pitch_)).at;
+    if (beyond_goal_m(slot, there) <= 0) return there;
+    return ways_.toward(from, grid_.centre(task_.goal[slot]), paced_m(task_.longest_m, pitch_)).at;
   }
 
   [[nodiscard]] double cost(std::size_t slot, Point aim_at, CellIndex cell) const {
@@ -75,6 +93,8 @@ class Snapper {
       const bool in_time = distance(aim_at, after.at) <= task_.onward_m;
       if (in_time && distance(centre, after.at) > task_.onward_m) sum += 25;
     }
+    const double beyond = beyond_goal_m(slot, centre) / pitch_;
+    if (beyond > 0) sum += kTooFarFromGoal + beyond * beyond;
     return sum;
   }
 
@@ -103,9 +123,9 @@ class Snapper {
         choices[i] = {{task_.now[i], 0.0}};
         continue;
       }
-      const bool on_time = task_.wanted[i].own && taken_[task_.own[i].at()] == 0 && reachable(i, task_.own[i]);
-      choices[i] = on_time ? std::vector<Choice>{{task_.own[i], 0.0}} : places_on_the_way(i, 2.3 * pitch_);
-      if (!on_time) continue;
+      const bool in_time = on_time(i);
+      choices[i] = in_time ? std::vector<Choice>{{task_.own[i], 0.0}} : places_on_the_way(i, 2.3 * pitch_);
+      if (!in_time) continue;
       const Point at = grid_.centre(task_.own[i]);
       for (const CellIndex cell : grid_.within(at, 1.5 * pitch_)) {
         if (cell == task_.own[i] || taken_[cell.at()] != 0 || !ways_.can_stand(cell) || !reachable(i, cell)) continue;

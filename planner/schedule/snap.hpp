@@ -8,6 +8,8 @@
 
 namespace footlight::planner {
 
+inline constexpr CellIndex kNoGoal{0xFFFFFFFFU};
+
 /// One step of everybody from cells to cells.
 struct SnapTask {
   const Ways* ways = nullptr;
@@ -18,6 +20,10 @@ struct SnapTask {
   double longest_m = 0;            ///< from now to the next instant
   double onward_m = 0;             ///< from the next instant to the one after
   std::span<const char> hold;      ///< one flag a slot: stays where it is; empty: nobody has to
+  /// Where the slots must be at the next exact formation, and how far from there they may be at the next instant so
+  /// that they can; kNoGoal, or all empty: there is none.
+  std::span<const CellIndex> goal = {};
+  double goal_m = 0;
 };
 
 /// Where the slots are next: whoever can reach the own cell stands on it; everybody else goes toward what is wanted as

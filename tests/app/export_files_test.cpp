@@ -52,12 +52,14 @@ TEST(MarksCsv, HasARowForEachPerformerAndMark) {
 }
 
 TEST(FormationsCsv, HasARowForEachFormationAndPerformer) {
-  EXPECT_EQ(formations_csv(small_plan()),
-            "formation,count,time_s,frame,performer,col,row\n"
-            "one/1,1,0,,1,1,0\n"
-            "one/1,1,0,,\"a,\"\"b\",0,0\n"
-            "film/1,11,5,12,1,3,0\n"
-            "film/1,11,5,12,\"a,\"\"b\",2,0\n");
+  Plan plan = small_plan();
+  plan.formations.back().key = false;
+  EXPECT_EQ(formations_csv(plan),
+            "formation,count,time_s,frame,performer,col,row,key\n"
+            "one/1,1,0,,1,1,0,1\n"
+            "one/1,1,0,,\"a,\"\"b\",0,0,1\n"
+            "film/1,11,5,12,1,3,0,0\n"
+            "film/1,11,5,12,\"a,\"\"b\",2,0,0\n");
 }
 
 TEST(StageJson, SaysWhatTheContractAsksFor) {

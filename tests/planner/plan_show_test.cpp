@@ -14,47 +14,17 @@
 #include "planner/measure.hpp"
 #include "planner/schedule/ways.hpp"
 #include "planner/validate.hpp"
-#include "tests/support/films.hpp"
+#include "tests/planner/small_show.hpp"
 
 namespace footlight::planner {
 namespace {
 
 using Films = std::vector<std::optional<Film>>;
 
-Show show_with(int people, GridKind kind = GridKind::square, int columns = 30, int rows = 20) {
-  Show show;
-  show.file = "show.yaml";
-  show.title = "Test";
-  show.stage.grid = *Grid::make(kind, columns, rows, 1.0);
-  for (int p = 0; p < people; ++p) {
-    Performer performer;
-    performer.id = performer.name = std::to_string(p + 1);
-    show.performers.push_back(performer);
-  }
-  return show;
-}
-
-std::vector<CellIndex> cells_in(const Grid& grid, const char* range) {
-  const CellRange r = *parse_cell_range(range);
-  std::vector<CellIndex> out;
-  for (int row = r.first.row; row <= r.last.row; ++row) {
-    for (int column = r.first.column; column <= r.last.column; ++column) out.push_back(grid.index({column, row}));
-  }
-  return out;
-}
-
-Section section_of(const char* name, Source from, double start, double duration, double hold, int line) {
-  Section section;
-  section.name = name;
-  section.from = std::move(from);
-  section.start_count = start;
-  section.duration_counts = duration;
-  section.hold_counts = hold;
-  section.position = {"show.yaml", line, 5};
-  return section;
-}
-
-VideoSource video() { return {"film.mp4", 0, std::nullopt, {}}; }
+using test::cells_in;
+using test::section_of;
+using test::show_with;
+using test::video;
 
 /// A disc that grows from nothing and then wanders.
 Film growing_film() {

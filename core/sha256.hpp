@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -8,7 +9,7 @@
 
 #include <nettle/sha2.h>
 
-namespace footlight::config {
+namespace footlight {
 
 /// SHA-256 (FIPS 180-4, by nettle) over a row of values. Each value is fed so that two different rows of values never
 /// give the same bytes: texts with their length first, numbers in eight bytes, little end first.
@@ -22,6 +23,8 @@ class Sha256 {
   Sha256& real(double value);
   Sha256& text(std::string_view value);
 
+  /// The sum begins anew.
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest();
   /// 64 hex digits, lower case; the sum begins anew.
   [[nodiscard]] std::string hex();
 
@@ -29,4 +32,4 @@ class Sha256 {
   sha256_ctx state_{};
 };
 
-}  // namespace footlight::config
+}  // namespace footlight

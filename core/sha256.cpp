@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "config/sha256.hpp"
+#include "core/sha256.hpp"
 
-#include <array>
 #include <bit>
 
-namespace footlight::config {
+namespace footlight {
 
 Sha256& Sha256::bytes(std::span<const std::uint8_t> data) {
   nettle_sha256_update(&state_, data.size(), data.data());
@@ -26,15 +25,19 @@ Sha256& Sha256::text(std::string_view value) {
   return bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
 }
 
+std::array<std::uint8_t, SHA256_DIGEST_SIZE> Sha256::digest() {
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> out{};
+  nettle_sha256_digest(&state_, out.size(), out.data());
+  return out;
+}
+
 std::string Sha256::hex() {
-  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-  nettle_sha256_digest(&state_, digest.size(), digest.data());
   std::string out;
-  for (const std::uint8_t byte : digest) {
+  for (const std::uint8_t byte : digest()) {
     out += "0123456789abcdef"[byte >> 4U];
     out += "0123456789abcdef"[byte & 15U];
   }
   return out;
 }
 
-}  // namespace footlight::config
+}  // namespace footlight

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "config/sha256.hpp"
+#include "core/sha256.hpp"
 
 #include <limits>
 
 #include <gtest/gtest.h>
 
-namespace footlight::config {
+namespace footlight {
 namespace {
 
 std::string sum_of(std::string_view text) {
@@ -29,4 +29,4 @@ TEST(Sha256, BothZerosAreOneNumber) {
 }
 
 }  // namespace
-}  // namespace footlight::config
+}  // namespace footlight

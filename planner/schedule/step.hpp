@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "planner/schedule/snap.hpp"
+#include "planner/schedule/walks.hpp"
+#include "planner/stages.hpp"
+
+namespace footlight::planner {
+
+/// Everybody from one instant to the next.
+struct StepTask {
+  SnapTask snap;       ///< without `hold`; a goal of kNoGoal binds nobody
+  bool exact = false;  ///< everybody goes to `snap.own`
+  double clearance_m = 0.5;
+  std::span<const std::uint32_t> kind = {};  ///< as LegTask::kind
+};
+
+struct Step {
+  std::vector<CellIndex> cells;  ///< of each slot
+  Leg leg;
+};
+
+/// Snaps and pairs; who conflicts waits, and whoever conflicts with those, until nobody does. If all waited nobody
+/// would, so it ends. The result does not depend on how the slots are numbered.
+[[nodiscard]] Step walk_step(const StepTask& task);
+
+/// The same as a stage. @param floor hash of the grid and what is blocked on it
+[[nodiscard]] Step walk_step(const StepTask& task, const StageKey& floor, Stages* stages, StageCount* count);
+
+}  // namespace footlight::planner
