@@ -2,57 +2,134 @@
 #include "planner/assignment/dense.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include "planner/assignment/kernels.hpp"
 
 namespace footlight::planner::assignment {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Of targets that are equally far a free one ends the search. Distances are whole numbers.
+constexpr double kFreeFirst = -0.25;
+
 /// Prices here are what is paid to a target, the other sign than outside: reduced cost = cost - value - paid.
 class DenseSearch {
  public:
-  DenseSearch(std::uint32_t size, std::span<const Value> costs)
-      : size_(size), costs_(costs), paid_(size, 0), distance_(size), from_(size), done_(size) {
-    matching_.target_of.assign(size, kNobody);
-    matching_.source_of.assign(size, kNobody);
+  explicit DenseSearch(const CostTable& costs)
+      : costs_(costs),
+        size_(costs.size()),
+        relax_(kernels().relax),
+        paid_(costs.width(), 0),
+        distance_(costs.width()),
+        from_(costs.width()),
+        rank_(costs.width()) {
+    matching_.target_of.assign(size_, kNobody);
+    matching_.source_of.assign(size_, kNobody);
   }
 
   Matching solve() {
     reduce_columns();
+    reduce_rows();
     for (std::uint32_t source = 0; source < size_; ++source) {
       if (matching_.target_of[source] == kNobody && !augment(source)) break;
     }
     matching_.price.resize(size_);
     matching_.value.assign(size_, kFar);
-    for (std::uint32_t target = 0; target < size_; ++target) matching_.price[target] = -paid_[target];
+    for (std::uint32_t target = 0; target < size_; ++target) {
+      matching_.price[target] = -static_cast<Value>(paid_[target]);
+    }
     for (std::uint32_t source = 0; source < size_; ++source) {
-      const Value* row = &costs_[static_cast<std::size_t>(source) * size_];
-      for (std::uint32_t target = 0; target < size_; ++target) {
-        if (row[target] < kFar) {
-          matching_.value[source] = std::min(matching_.value[source], row[target] - paid_[target]);
-        }
-      }
+      const double least = two_best(source).best;
+      if (least < kInfinity) matching_.value[source] = static_cast<Value>(least);
     }
     return std::move(matching_);
   }
 
  private:
-  void reduce_columns() {
-    std::vector<std::uint32_t> cheapest(size_, 0);
-    for (std::uint32_t target = 0; target < size_; ++target) paid_[target] = costs_[target];
-    for (std::uint32_t source = 1; source < size_; ++source) {
-      const Value* row = &costs_[static_cast<std::size_t>(source) * size_];
-      for (std::uint32_t target = 0; target < size_; ++target) {
-        if (row[target] < paid_[target]) {
-          paid_[target] = row[target];
-          cheapest[target] = source;
-        }
+  struct TwoBest {
+    double best = kInfinity;
+    double second = kInfinity;
+    std::uint32_t target = 0;
+    std::uint32_t second_target = 0;
+  };
+  [[nodiscard]] TwoBest two_best(std::uint32_t source) const {
+    const double* row = costs_.row(source);
+    TwoBest found;
+    for (std::uint32_t target = 0; target < size_; ++target) {
+      const double value = row[target] - paid_[target];
+      if (!(value < found.second)) continue;
+      if (value < found.best) {
+        found.second = found.best;
+        found.second_target = found.target;
+        found.best = value;
+        found.target = target;
+      } else {
+        found.second = value;
+        found.second_target = target;
       }
     }
-    for (std::uint32_t target = size_; target-- > 0;) {
-      if (paid_[target] >= kFar) {
-        paid_[target] = 0;
-      } else if (matching_.target_of[cheapest[target]] == kNobody) {
-        match(cheapest[target], target);
+    return found;
+  }
+
+  void reduce_columns() {
+    std::vector<double> cheapest(costs_.width(), 0);
+    std::copy_n(costs_.row(0), costs_.width(), paid_.begin());
+    for (std::uint32_t source = 1; source < size_; ++source) {
+      const double* row = costs_.row(source);
+      const auto number = static_cast<double>(source);
+      for (std::uint32_t target = 0; target < costs_.width(); ++target) {
+        const bool less = row[target] < paid_[target];
+        cheapest[target] = less ? number : cheapest[target];
+        paid_[target] = less ? row[target] : paid_[target];
       }
+    }
+    for (std::uint32_t target = costs_.width(); target-- > 0;) {
+      const auto source = static_cast<std::uint32_t>(cheapest[target]);
+      if (!(paid_[target] < kInfinity)) {
+        paid_[target] = 0;
+      } else if (matching_.target_of[source] == kNobody) {
+        match(source, target);
+      }
+    }
+  }
+
+  /// Every free source takes its best target, which is paid as much less as makes the second best as good; who is
+  /// displaced goes on, at once where something was gained by it, else in the next round.
+  void reduce_rows() {
+    constexpr int kRounds = 2;
+    std::vector<std::uint32_t> free;
+    for (std::uint32_t source = 0; source < size_; ++source) {
+      if (matching_.target_of[source] == kNobody) free.push_back(source);
+    }
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<std::uint32_t> later;
+      std::size_t steps = std::size_t{4} * size_;  // a few could go on displacing each other for long
+      for (const std::uint32_t first : free) {
+        std::uint32_t source = first;
+        while (source != kNobody) {
+          const TwoBest found = two_best(source);
+          if (!(found.second < kInfinity) || steps == 0) {
+            later.push_back(source);
+            break;
+          }
+          --steps;
+          const bool gained = found.best < found.second;
+          std::uint32_t target = found.target;
+          if (gained) {
+            paid_[target] -= found.second - found.best;
+          } else if (matching_.source_of[target] != kNobody) {
+            target = found.second_target;
+          }
+          const std::uint32_t displaced = matching_.source_of[target];
+          match(source, target);
+          if (displaced != kNobody) matching_.target_of[displaced] = kNobody;
+          if (displaced != kNobody && !gained) later.push_back(displaced);
+          source = gained ? displaced : kNobody;
+        }
+      }
+      free = std::move(later);
     }
   }
 
@@ -63,49 +140,32 @@ class DenseSearch {
 
   /// Dijkstra's search from one free source over the targets; distances count from the source's least reduced cost.
   bool augment(std::uint32_t start) {
-    const Value* row = &costs_[static_cast<std::size_t>(start) * size_];
+    std::ranges::fill(distance_, kInfinity);
     for (std::uint32_t target = 0; target < size_; ++target) {
-      distance_[target] = row[target] < kFar ? row[target] - paid_[target] : kFar;
+      rank_[target] = matching_.source_of[target] == kNobody ? kFreeFirst : 0;
     }
-    std::ranges::fill(from_, start);
-    std::ranges::fill(done_, 0);
+    std::uint32_t source = start;
+    double base = 0;
     while (true) {
-      std::uint32_t nearest = kNobody;
-      Value least = kFar;
-      for (std::uint32_t target = 0; target < size_; ++target) {
-        if (done_[target] == 0 && distance_[target] < least) {
-          least = distance_[target];
-          nearest = target;
-        }
-      }
-      if (nearest == kNobody) return false;
-      done_[nearest] = 1;
-      if (matching_.source_of[nearest] == kNobody) {
+      const std::uint32_t nearest = relax_(costs_.row(source), paid_.data(), rank_.data(), base, source, costs_.width(),
+                                           distance_.data(), from_.data());
+      if (!(distance_[nearest] + rank_[nearest] < kInfinity)) return false;
+      rank_[nearest] = kInfinity;
+      source = matching_.source_of[nearest];
+      if (source == kNobody) {
         apply(start, nearest);
         return true;
       }
-      relax(matching_.source_of[nearest], nearest);
-    }
-  }
-
-  void relax(std::uint32_t source, std::uint32_t reached) {
-    const Value* row = &costs_[static_cast<std::size_t>(source) * size_];
-    const Value base = distance_[reached] - (row[reached] - paid_[reached]);
-    for (std::uint32_t target = 0; target < size_; ++target) {
-      const Value through = base + row[target] - paid_[target];
-      if (row[target] < kFar && done_[target] == 0 && through < distance_[target]) {
-        distance_[target] = through;
-        from_[target] = source;
-      }
+      base = distance_[nearest] - (costs_.row(source)[nearest] - paid_[nearest]);
     }
   }
 
   void apply(std::uint32_t start, std::uint32_t end) {
     for (std::uint32_t target = 0; target < size_; ++target) {
-      if (done_[target] != 0) paid_[target] += distance_[target] - distance_[end];
+      if (rank_[target] == kInfinity) paid_[target] += distance_[target] - distance_[end];
     }
     for (std::uint32_t target = end;;) {
-      const std::uint32_t source = from_[target];
+      const auto source = static_cast<std::uint32_t>(from_[target]);
       const std::uint32_t before = matching_.target_of[source];
       match(source, target);
       if (source == start) return;
@@ -113,17 +173,19 @@ class DenseSearch {
     }
   }
 
+  const CostTable& costs_;
   std::uint32_t size_;
-  std::span<const Value> costs_;
-  std::vector<Value> paid_;
-  std::vector<Value> distance_;
-  std::vector<std::uint32_t> from_;
-  std::vector<std::uint8_t> done_;
+  decltype(Kernels::relax) relax_;
+  std::vector<double> paid_, distance_, from_;
+  std::vector<double> rank_;  ///< kFreeFirst or 0: open, infinity: the search has been there
   Matching matching_;
 };
 
 }  // namespace
 
-Matching match_dense(std::uint32_t size, std::span<const Value> costs) { return DenseSearch(size, costs).solve(); }
+CostTable::CostTable(std::uint32_t size)
+    : size_(size), width_((size + kFan - 1) / kFan * kFan), costs_(std::size_t{size_} * width_, kInfinity) {}
+
+Matching match_dense(const CostTable& costs) { return DenseSearch(costs).solve(); }
 
 }  // namespace footlight::planner::assignment

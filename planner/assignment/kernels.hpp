@@ -67,9 +67,10 @@ struct Kernels {
   /// @param count a multiple of kFan, at most kListed
   Offer (*look)(const float* walk, const std::uint32_t* target, std::uint32_t count, const float* price);
   /// One step of Dijkstra's search in a full table, for all columns: distance[t] = min(distance[t], base + cost[t] -
-  /// paid[t]) where that is open (done[t] is 0, else infinity), with from[t] = source where it was less.
-  /// @param count a multiple of kFan @return the first of the least distance + done
-  std::uint32_t (*relax)(const double* cost, const double* paid, const double* done, double base, double source,
+  /// paid[t]), with from[t] = source where it was less.
+  /// @param rank added to the distances only for finding the least: infinity where the search has been
+  /// @param count a multiple of kFan @return the first of the least distance + rank
+  std::uint32_t (*relax)(const double* cost, const double* paid, const double* rank, double base, double source,
                          std::uint32_t count, double* distance, double* from);
 };
 

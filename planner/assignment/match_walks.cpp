@@ -19,18 +19,6 @@ constexpr std::uint32_t kMostCandidates = 48;
 constexpr std::uint64_t kMostBids = 60;  ///< a source, in one phase of an auction
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Matching match_all_pairs(const Walks& walks) {
-  const std::uint32_t size = walks.size();
-  std::vector<Value> costs;
-  costs.reserve(static_cast<std::size_t>(size) * size);
-  for (std::uint32_t i = 0; i < size; ++i) {
-    for (std::uint32_t s = 0; s < size; ++s) {
-      costs.push_back(!walks.limited() || walks.allowed(i, s) ? walks.cost(i, s) : kFar);
-    }
-  }
-  return match_dense(size, costs);
-}
-
 /// The tree over the targets of some walks, priced in integers.
 class PricedTargets {
  public:
@@ -127,6 +115,18 @@ std::vector<Value> extend(const Walks& walks, const Walks& coarse, const Matchin
     if (source != kNobody) prices[s] += coarse.cost(source, near) - walk(source, s);
   }
   return prices;
+}
+
+Matching match_all_pairs(const Walks& walks) {
+  const std::uint32_t size = walks.size();
+  CostTable costs(size);
+  for (std::uint32_t i = 0; i < size; ++i) {
+    double* row = costs.row(i);
+    for (std::uint32_t s = 0; s < size; ++s) {
+      if (!walks.limited() || walks.allowed(i, s)) row[s] = static_cast<double>(walks.cost(i, s));
+    }
+  }
+  return match_dense(costs);
 }
 
 /// Steps and margins in units of Walks::spacing, found by trial on formations of performers. Distances are nearly

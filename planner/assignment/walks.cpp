@@ -14,6 +14,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kOffLattice = 1e-7;  ///< of a step
 constexpr double kMostSteps = 0x1p22;
+/// So many people and fewer are matched in a full table: all sums of costs are whole numbers that doubles hold
+/// (dense.hpp).
+constexpr std::size_t kExactInDoubles = 64;
 
 /// The largest step of which all differences are multiples, found as Euclid does; 0 when all are 0.
 class CommonStep {
@@ -154,7 +157,7 @@ Walks::Walks(std::span<const Point> sources, std::span<const Point> targets, Wal
   if (!lattice) {
     const double longest = metric == WalkCost::squared ? 8 * widest * widest : 3 * widest;
     const int size_bits = static_cast<int>(std::bit_width(size));
-    const int bits = std::min(46, 58 - size_bits);
+    const int bits = std::min({46, 58 - size_bits, size <= kExactInDoubles ? 49 - size_bits : 46});
     scale_ = std::ldexp(1.0, std::clamp(bits - (longest > 0 ? std::ilogb(longest) + 1 : 0), -60, 60));
     unit_ = 1 / scale_;
   }

@@ -389,6 +389,45 @@ TEST(AssignInstructions, AllGiveTheSameBytes) {
   }
 }
 
+/// Costs as a blocked way makes them: nobody may cross the middle but by a gap, so that walks are longer than straight.
+std::vector<Arc> around_a_wall(const Points& a, const Points& b) {
+  const Point gap{20.3, 20};
+  std::vector<Arc> arcs;
+  for (std::uint32_t i = 0; i < a.size(); ++i) {
+    for (std::uint32_t j = 0; j < b.size(); ++j) {
+      const bool crosses = (a[i].x < gap.x) != (b[j].x < gap.x);
+      const double walk = crosses ? distance(a[i], gap) + distance(gap, b[j]) : distance(a[i], b[j]);
+      if (walk < 25) arcs.push_back({i, j, walk * walk});
+    }
+  }
+  return arcs;
+}
+
+TEST(AssignSparse, ProvesItselfWhereAWayIsBlocked) {
+  for (const std::size_t size : {20U, 150U, 400U}) {
+    const auto a = distinct_cells(size, size, 40);
+    const auto b = distinct_cells(size + 1, size, 40);
+    const auto arcs = around_a_wall(a, b);
+    const Assignment found = answer(assign_sparse(static_cast<std::uint32_t>(size), arcs));
+    std::vector<int> taken(size, 0);
+    double sum = 0;
+    double dual = 0;
+    double worst = 0;
+    for (const Arc& arc : arcs) {
+      worst = std::min(worst, arc.cost - found.source_value[arc.source] - found.target_value[arc.target]);
+      if (found.target_of[arc.source] == arc.target) sum += arc.cost;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      EXPECT_EQ(taken[found.target_of[i]]++, 0);
+      dual += found.source_value[i] + found.target_value[i];
+    }
+    EXPECT_GE(worst, -1e-9 * sum);
+    EXPECT_NEAR(dual, sum, 1e-9 * sum) << size;
+    EXPECT_NEAR(found.cost, sum, 1e-9 * sum);
+    EXPECT_NEAR(found.gap, 0, 1e-9 * sum);
+  }
+}
+
 TEST(AssignInstructions, TheGenericOnesAreAlwaysThere) {
   EXPECT_TRUE(assignment::has_instructions(assignment::Instructions::generic));
 }
