@@ -85,6 +85,7 @@ class ShowPlanner {
       planned_.shortest.push_back(shortest_duration(limits_, *chain, SectionIndex::of(s), planned_.plan));
     }
     progress_.tell("validate", 1);
+    if (progress_.stopped()) return interrupted();
     return std::move(planned_);
   }
 

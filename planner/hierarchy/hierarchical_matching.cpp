@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner/hierarchy/hierarchical_matching.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 
@@ -79,6 +80,10 @@ class Matcher {
         parts[of_region[r].front()] = members;
         continue;
       }
+      if (of_region[r].size() == 2) {
+        split_in_two(cells, members, shipments, of_region[r], other, others, parts);
+        continue;
+      }
       Positions seats;  // the shipment of each seat
       for (const std::uint32_t s : of_region[r]) {
         seats.insert(seats.end(), static_cast<std::size_t>(shipments[s].people), s);
@@ -98,6 +103,23 @@ class Matcher {
       for (std::uint32_t m = 0; m < members.size(); ++m) parts[seats[seated->target_of[m]]].push_back(members[m]);
     }
     return parts;
+  }
+
+  /// Two ends only: whoever gains most by the first rather than the second goes there, which is exact.
+  void split_in_two(std::span<const CellIndex> cells, const Positions& members, const std::vector<Shipment>& shipments,
+                    const Positions& ends, std::uint32_t Shipment::*other, const std::vector<Load>& others,
+                    std::vector<Positions>& parts) const {
+    const Point first = others[shipments[ends[0]].*other].anchor;
+    const Point second = others[shipments[ends[1]].*other].anchor;
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t member : members) {
+      const Point place = grid_.centre(cells[member]);
+      order.emplace_back(squared_length(place - first) - squared_length(place - second), member);
+    }
+    std::sort(order.begin(), order.end());
+    const auto to_first = static_cast<std::size_t>(shipments[ends[0]].people);
+    FL_CHECK(to_first + static_cast<std::size_t>(shipments[ends[1]].people) == members.size());
+    for (std::size_t n = 0; n < order.size(); ++n) parts[ends[n < to_first ? 0 : 1]].push_back(order[n].second);
   }
 
   void match_persons(const Positions& from, const Positions& to) {

@@ -24,6 +24,7 @@ class Network {
     }
     for (const Load& load : to) demand_.push_back(load.people);
     potential_.assign(rows_ + columns_, 0.0);
+    send_where_nothing_is_cheaper();
   }
 
   /// Sends people along the cheapest path from any source with supply to any target with demand.
@@ -60,6 +61,28 @@ class Network {
   }
 
  private:
+  /// Prices under which every region has an end that costs nothing more; most people can go there at once.
+  void send_where_nothing_is_cheaper() {
+    for (std::size_t i = 0; i < rows_; ++i) {
+      potential_[i] = -*std::min_element(cost_.begin() + static_cast<std::ptrdiff_t>(i * columns_),
+                                         cost_.begin() + static_cast<std::ptrdiff_t>((i + 1) * columns_));
+    }
+    for (std::size_t j = 0; j < columns_; ++j) {
+      double least = kFar;
+      for (std::size_t i = 0; i < rows_; ++i) least = std::min(least, cost_[i * columns_ + j] + potential_[i]);
+      potential_[rows_ + j] = least;
+    }
+    for (std::size_t i = 0; i < rows_; ++i) {
+      for (std::size_t j = 0; j < columns_; ++j) {
+        if (cost_[i * columns_ + j] + potential_[i] > potential_[rows_ + j]) continue;
+        const int people = std::min(supply_[i], demand_[j]);
+        flow_[i * columns_ + j] = people;
+        supply_[i] -= people;
+        demand_[j] -= people;
+      }
+    }
+  }
+
   /// Dijkstra over reduced costs up to the first target with demand. @return that node, or rows_ + columns_
   std::size_t shortest_path() {
     const std::size_t nodes = rows_ + columns_;

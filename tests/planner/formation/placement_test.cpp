@@ -102,5 +102,19 @@ TEST(PlacePicture, ContainShowsTheWholeFrameAndCoverTheWholeFloor) {
   EXPECT_DOUBLE_EQ(place_picture({&stage, &usable, Fit::cover, &mask, whole, 100}).map[0], 2.5);
 }
 
+TEST(PlacePicture, ContainAndCoverMeanTheFloorThatTheReserveLeaves) {
+  // 20 x 20 cells between the wings; the frame is twice as wide as high.
+  const Stage stage = stage_of(40, 20, {{{0, 0}, {9, 19}}, {{30, 0}, {39, 19}}});
+  const CellFlags usable = usable_on(stage);
+  const Mask mask = tests::mask_where(200, 100, [](int, int) { return true; });
+  const Box whole{0, 0, 200, 100};
+  const Placement contain = place_picture({&stage, &usable, Fit::contain, &mask, whole, 200});
+  const Placement cover = place_picture({&stage, &usable, Fit::cover, &mask, whole, 200});
+  EXPECT_DOUBLE_EQ(contain.map[0], 10);  // 20 m for 200 pixels
+  EXPECT_DOUBLE_EQ(cover.map[0], 5);     // 20 m for 100 pixels: what lies over the wings is not drawn
+  EXPECT_NEAR(filled(stage, usable, mask, contain), 200, 10);
+  EXPECT_NEAR(filled(stage, usable, mask, cover), 400, 20);
+}
+
 }  // namespace
 }  // namespace footlight::planner
