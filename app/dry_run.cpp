@@ -344,6 +344,11 @@ DryRunReport DryRun::report() {
 
 Result<DryRunReport> dry_run(const Show& show, const Plan& plan, Rig rig, const DryRunOptions& options) {
   if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
+  if (options.faults.dead > 0 && static_cast<std::size_t>(options.faults.dead) >= rig.nodes.size()) {
+    return input_error(fmt::format("faults: \"dead={}\" leaves none of the rig's {} nodes (at most dead={})",
+                                   options.faults.dead, rig.nodes.size(),
+                                   std::max<std::size_t>(1, rig.nodes.size()) - 1));
+  }
   return DryRun(show, plan, with_simulated_buses(std::move(rig)), controller::cue_plays(show, plan), options).run();
 }
 

@@ -84,8 +84,10 @@ std::string dry_run_text(const DryRunReport& report) {
     for (const std::string& node : report.dead) text += " " + node;
     text += "\n";
   }
-  text += fmt::format("{} deliveries, {} retries; {:.3f} % of marker-time right; {} markers late at a switch\n",
-                      report.deliveries, report.retries, report.right_share * 100, report.late);
+  text += fmt::format("{} deliveries, {} retries; {} of marker-time right; {} markers late at a switch\n",
+                      report.deliveries, report.retries,
+                      report.markers == 0 ? "no marker, nothing" : fmt::format("{:.3f} %", report.right_share * 100),
+                      report.late);
   text += fmt::format(
       "{} markers wrong at the end of a cue, {} seen with a look of another moment, {} wrong {:.1f} s after "
       "the last fault\n",

@@ -77,7 +77,7 @@ Result<DryRunReport> play(Session& session, const Options& options, const Planne
   std::optional<SteadyClock> clock;
   if (options.realtime) {
     dry.pace = &clock.emplace();
-    dry.moment = [&](const std::string& line) { session.print(line); };
+    dry.moment = [&](const std::string& line) { session.print_now(line); };
   } else {
     dry.progress = [&](double share) { session.tell("dry run", share); };
   }
@@ -119,6 +119,11 @@ void add_dryrun_command(CLI::App& program, Session& session, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   options->choice.add_options(*command);
   command->add_option("--seed", options->seed, "what happens by chance depends on this number alone")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return text.starts_with('-') ? std::string("a seed is a whole number from 0 on") : std::string();
+          },
+          "", "whole number"))
       ->capture_default_str();
   command->add_option("--faults", options->faults,
                       "what goes wrong, for example loss=5%,reboot=2 (also corrupt, duplicate, delay, dead)");

@@ -40,6 +40,24 @@ std::optional<Result<Film>> decode(const Session& session, const Section& sectio
   return std::nullopt;
 }
 
+bool shows_nothing(const Film& film) {
+  return std::ranges::all_of(film.frames, [](const Mask& frame) {
+    return std::ranges::all_of(frame.words(), [](std::uint64_t word) { return word == 0; });
+  });
+}
+
+Diagnostic empty_picture(const Show& show, const Section& section, const Film& film) {
+  Diagnostic out;
+  out.severity = Severity::warning;
+  out.position = section.position;
+  out.key_path = key_path(show, section, ".from");
+  out.text =
+      fmt::format("nothing in it is {} {}: the picture of every frame is empty and everybody waits in the reserve",
+                  film.inverted ? "as dark as" : "brighter than", film.threshold);
+  out.hint = film.inverted ? "a higher threshold, or threshold: otsu" : "a lower threshold, or threshold: otsu";
+  return out;
+}
+
 std::string without_last_newline(std::string text) {
   if (text.ends_with('\n')) text.pop_back();
   return text;
@@ -59,6 +77,7 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
   Films films(show.sections.size());
   std::vector<std::optional<config::FilmLength>> lengths(show.sections.size());
   Diagnostics diagnostics;
+  std::vector<Diagnostic> empty;
   for (std::size_t i = 0; i < show.sections.size(); ++i) {
     const Section& section = show.sections[i];
     session.tell("decoding", static_cast<double>(i) / static_cast<double>(show.sections.size()));
@@ -66,6 +85,7 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
     if (!film) continue;
     if (film->has_value()) {
       Film& whole = **film;
+      if (shows_nothing(whole)) empty.push_back(empty_picture(show, section, whole));
       lengths[i] = config::FilmLength{static_cast<int>(whole.frames.size()), whole.fps};
       films[i] = std::move(whole);
     } else if (film->error().kind != ErrorKind::input) {
@@ -80,6 +100,7 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
   const auto settled = config::settle_film_lengths(show, lengths);
   if (!settled) return input_error(without_last_newline(settled.error().to_text()));
   session.tell("decoding", 1);
+  session.warn(empty);
   return films;
 }
 

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,22 +26,46 @@ struct Options {
   std::string pictures;
 };
 
+constexpr const char* kPictureList = "pictures.txt";  // what has been drawn into the folder, a name a line
+constexpr std::size_t kMostListBytes = 10'000'000;
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::vector<std::string> out;
+  const auto text = config::read_file(file, kMostListBytes);
+  if (!text) return out;
+  std::istringstream in(*text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
 Status<> write_pictures(Session& session, const PlannedShow& planned, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return input_error(fmt::format("cannot make the folder '{}': {}", folder, error.message()));
   const Plan& plan = planned.plan();
+  const auto listed = std::filesystem::path(folder) / kPictureList;
+  const std::vector<std::string> older = lines_of(listed);
+  std::string names;
   for (std::size_t i = 0; i < plan.formations.size(); ++i) {
     if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while drawing pictures"};
     session.tell("drawing pictures", static_cast<double>(i) / static_cast<double>(plan.formations.size()));
     const auto index = FormationIndex::of(i);
     const auto& film = planned.films->at(plan.formations[i].section.at());
     const auto png = formation_png(plan, planned.loaded.show, index, film ? &*film : nullptr);
-    auto done = config::write_file(std::filesystem::path(folder) / picture_name(plan, index), png);
+    const std::string name = picture_name(plan, index);
+    auto done = config::write_file(std::filesystem::path(folder) / name, png);
     if (!done) return done;
+    names += name + "\n";
   }
   session.clear_line();
-  return Done{};
+  // What an earlier plan has drawn and this one has not would be taken for a formation of this one.
+  for (const std::string& name : older) {
+    const bool ours = name.ends_with(".png") && name.find('/') == std::string::npos;
+    if (ours && ("\n" + names).find("\n" + name + "\n") == std::string::npos) {
+      std::filesystem::remove(std::filesystem::path(folder) / name, error);
+    }
+  }
+  return config::write_file(listed, names);
 }
 
 int run(Session& session, const Options& options) {

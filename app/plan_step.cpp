@@ -101,7 +101,7 @@ std::string plan_file_beside(const std::string& show_file) {
 Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice) {
   auto out = read(session, choice);
   if (!out) return out;
-  const auto hash = config::hash_files(out->loaded.files);
+  const auto hash = config::hash_files(out->loaded.planned_files);
   if (!hash) return hash.error();
   if (auto done = plan_now(session, *out, *hash, choice.threads); !done) return std::move(done).error();
   return out;
@@ -110,7 +110,7 @@ Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice) {
 Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool want_films) {
   auto out = read(session, choice);
   if (!out) return out;
-  const auto hash = config::hash_files(out->loaded.files);
+  const auto hash = config::hash_files(out->loaded.planned_files);
   if (!hash) return hash.error();
   auto plan = plan_from_file(session, choice, *hash);
   if (!plan) return std::move(plan).error();

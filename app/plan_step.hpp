@@ -41,9 +41,9 @@ struct PlannedShow {
 /// "shows/vine/show.plan" for "shows/vine/show.yaml".
 [[nodiscard]] std::string plan_file_beside(const std::string& show_file);
 
-/// Reads the show and takes its plan from a file of the same show (same bytes of every file it reads), else plans it
-/// and says so. A refused plan is returned with its refusal; see `refusal_of`.
-/// Errors: whatever the show, its media or the plan file have wrong; interrupted.
+/// Reads the show and takes its plan from a file of the same show (same bytes of every file that the planner reads),
+/// else plans it and says so. A refused plan is returned with its refusal; see `refusal_of`. Errors: whatever the show,
+/// its media or the plan file have wrong; interrupted.
 [[nodiscard]] Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool want_films);
 
 /// Reads and plans, whatever plan files there are.

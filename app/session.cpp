@@ -60,6 +60,11 @@ void Session::print(std::string_view text) const {
   if (text.empty() || text.back() != '\n') write(stdout, "\n");
 }
 
+void Session::print_now(std::string_view text) const {
+  print(text);
+  std::fflush(stdout);
+}
+
 void Session::note(std::string_view text) {
   if (quiet) return;
   clear_line();

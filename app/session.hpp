@@ -33,6 +33,8 @@ class Session {
 
   /// A result. Ends with a newline of its own.
   void print(std::string_view text) const;
+  /// A line that somebody waits for: it does not stay in a buffer, also when stdout is a pipe.
+  void print_now(std::string_view text) const;
   /// Something that deserves a word; not with --quiet.
   void note(std::string_view text);
   void warn(const std::vector<Diagnostic>& warnings);

@@ -88,6 +88,7 @@ Result<LoadedShow, Diagnostics> load_show(const std::filesystem::path& file) {
   ShowReading show{reading, file.parent_path(), loaded};
   if (auto root = read_root(reading, *bytes, show_listing())) {
     read_show(show, *root);
+    loaded.planned_files = loaded.files;
     read_show_rig(show, *root);
   }
   if (diagnostics.has_errors()) return bounded(diagnostics, reading.file);

@@ -18,7 +18,9 @@ struct LoadedShow {
   Show show;
   Rig rig;  ///< of `show.rig_file`, or simulated buses made for the stage
   std::vector<Diagnostic> warnings;
-  std::vector<std::string> files;  ///< show, rig, CSV, profiles and media, resolved: what a plan's hash covers
+  std::vector<std::string> files;  ///< show, rig, CSV, profiles and media, resolved: no output may overwrite them
+  /// Of them what the planner reads, which a plan's hash covers: all but the rig and its profiles.
+  std::vector<std::string> planned_files;
 };
 
 /// Reads a show file, its rig and its CSV files (not the media, which must only exist). Every error of all files in one

@@ -50,6 +50,7 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
 }
 
 Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
+  if (nodes_.empty()) return kNever;  // nobody hears: on CAN not even an acknowledgement comes
   now_ = now;
   show_time_ = target.show_time;
   refused_ = false;
@@ -310,6 +311,7 @@ void BusLoop::need_looks(std::size_t k, const NodeState& node) noexcept {
 // ---- what others may know
 
 bool BusLoop::settled() const noexcept {
+  if (nodes_.empty()) return true;
   if (!started_) return false;
   for (std::size_t i = 1; i < schedule_.looks().size(); ++i) {
     if (urgent_[i] && uploads_[i] > 0) return false;

@@ -302,6 +302,83 @@ TEST_F(StarterShow, DrawsAPictureOfEveryKeyFormation) {
   }
 }
 
+TEST_F(StarterShow, ThePicturesOfAnEarlierPlanDoNotStayBesideThoseOfThisOne) {
+  const std::string pictures = folder_ / "pictures";
+  ASSERT_EQ(footlight({"plan", show_, "--pictures", pictures}).status, 0);
+  folder_.write("pictures/004-mine-1.png", "not drawn by us");
+  replace("  - {name: arrow, from: {cells: arrow.csv}, start: count 49, hold: 8 counts}\n", "");
+  replace("  - {number: \"3\", section: arrow, name: Arrow}\n", "");
+  ASSERT_EQ(footlight({"plan", show_, "--pictures", pictures}).status, 0);
+  Names names;
+  for (const auto& entry : std::filesystem::directory_iterator(pictures)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (Names{"001-line-1.png", "002-ring-1.png", "004-mine-1.png", "pictures.txt"}));
+  EXPECT_EQ(folder_.read("pictures/pictures.txt"), "001-line-1.png\n002-ring-1.png\n");
+}
+
+TEST_F(StarterShow, AChangedRigLeavesThePlanAsItIs) {
+  folder_.write("s/rig.yaml", "rig: 1\nbuses: [{name: a, url: \"sim://rtu\"}]\nfloor: {buses: a}\n");
+  replace("# rig: rig.yaml", "rig: rig.yaml");
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  folder_.write("s/rig.yaml",
+                "rig: 1\nbuses: [{name: a, url: \"sim://rtu\", bits_per_second: 57600}]\nfloor: {buses: a}\n");
+  const Ran ran = footlight({"dryrun", show_});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "");
+  const Ran over = footlight({"plan", show_, "-o", folder_ / "s/rig.yaml"});
+  EXPECT_EQ(over.status, 2) << "it is read all the same";
+}
+
+TEST_F(StarterShow, ASeedBelowZeroIsRefused) {
+  const Ran ran = footlight({"dryrun", show_, "--seed", "-1"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: --seed: a seed is a whole number from 0 on (footlight --help tells what there is)\n");
+}
+
+TEST_F(StarterShow, DeadNodesLeaveSomebodyToLookAt) {
+  const Ran ran = footlight({"dryrun", show_, "-q", "--faults", "dead=500"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.err, "error: faults: \"dead=500\" leaves none of the rig's 3 nodes (at most dead=2)\n");
+  EXPECT_EQ(ran.out, "");
+}
+
+TEST_F(StarterShow, ABusWithoutNodesCarriesNothing) {
+  folder_.write("s/rig.yaml",
+                "rig: 1\nbuses:\n  - {name: a, url: \"sim://rtu\"}\n  - {name: b, url: \"sim://can\"}\n"
+                "  - {name: c, url: \"sim://serial\"}\nfloor: {buses: a}\n");
+  replace("# rig: rig.yaml", "rig: rig.yaml");
+  const json report = json::parse(footlight({"dryrun", show_, "-q", "--json"}).out);
+  for (const int bus : {1, 2}) {
+    EXPECT_EQ(report["buses"][bus]["nodes"], 0);
+    EXPECT_EQ(report["buses"][bus]["frames"], 0);
+    EXPECT_EQ(report["buses"][bus]["utilisation"], 0);
+  }
+}
+
+TEST_F(StarterShow, APictureInWhichNothingIsSeenIsWarnedOf) {
+  std::filesystem::copy_file(kVideo, folder_ / "s/film.avi");
+  replace("{cells: ring.csv}, start: count 25, hold: 8 counts",
+          "{video: film.avi, threshold: 255}, start: count 25, duration: 8 counts");
+  EXPECT_THAT(footlight({"check", show_}).err,
+              StartsWith(show_ + ":26:5: warning: sections[1].from: nothing in it is brighter than 255: the picture of "
+                                 "every frame is empty and everybody waits in the reserve (a lower threshold, or "
+                                 "threshold: otsu)\n"));
+}
+
+/// The first line must be there while the show still plays.
+TEST_F(StarterShow, RealTimeLinesComeAsTheyHappen) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const std::string out = folder_ / "out";
+  const Ran ran = footlight({"dryrun", show_, "--realtime"}, out, [&](pid_t pid) {
+    for (int i = 0; i < 3000 && (!std::filesystem::exists(out) || std::filesystem::file_size(out) == 0); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_THAT(folder_.read("out"), HasSubstr("opening"));
+    kill(pid, SIGINT);
+  });
+  EXPECT_EQ(ran.status, 130);
+}
+
 TEST_F(StarterShow, WhatCannotBeWalkedIsRefusedAndWritesNothing) {
   make_unwalkable();
   const Ran plan = footlight({"plan", show_});
