@@ -158,12 +158,12 @@ TEST(Pictures, TwoImagesThatNoWalkCanJoinInTimeAreRefusedByNameAndByWhatWouldDo)
   const auto planned = plan_show(show, {half(true), half(false)});
   ASSERT_TRUE(planned) << planned.error().message;
   EXPECT_FALSE(planned->plan.valid);
-  EXPECT_EQ(
-      planned->refusal,
-      std::vector<std::string>{
-          "show.yaml:32:5: error: sections[1]: performer 46 would walk 38.0 m from A19 to AM20 between count 9 and "
-          "count 13 at 19.0 m/s, 13.6 times the limit of 1.4 m/s (start the section 51 counts later, hold the one "
-          "before shorter, or slow the music to 8 counts a minute)"});
+  // Which of the people on the far edges is named is the pairing's choice.
+  EXPECT_THAT(planned->refusal,
+              testing::ElementsAre(testing::MatchesRegex(
+                  "show.yaml:32:5: error: sections\\[1\\]: performer [0-9]+ would walk 38.0 m from A[0-9]+ to AM[0-9]+ "
+                  "between count 9 and count 13 at 19.0 m/s, 13.6 times the limit of 1.4 m/s \\(start the section 51 "
+                  "counts later, hold the one before shorter, or slow the music to 8 counts a minute\\)")));
 }
 
 TEST(Pictures, EveryFitLaysFramesOfEveryShapeOnTheFloor) {
