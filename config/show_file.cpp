@@ -2,6 +2,8 @@
 #include "config/show_file.hpp"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "config/nearest.hpp"
 #include "config/rig_file.hpp"
@@ -12,6 +14,8 @@ namespace {
 
 /// Printed at most; a file with more errors has one reason, not that many.
 constexpr std::size_t kMostErrors = 200;
+/// Of the errors of one kind in a table.
+constexpr std::size_t kShownAlike = 3;
 
 void read_show(ShowReading& show, MappingReader& root) {
   (void)root.integer("footlight");
@@ -37,11 +41,59 @@ void read_show_rig(ShowReading& show, MappingReader& root) {
   }
 }
 
+/// A text without what differs from row to row: numbers, names of cells and what stands in quotes.
+std::string kind_of(const std::string& text) {
+  std::string out;
+  bool quoted = false;
+  for (const char c : text) {
+    const bool digit = c >= '0' && c <= '9';
+    if (digit) {
+      while (!out.empty() && ((out.back() >= 'A' && out.back() <= 'Z') || out.back() == '#')) out.pop_back();
+    }
+    if (c == '"') quoted = !quoted;
+    if (!quoted) out += digit ? '#' : c;
+  }
+  return out;
+}
+
+/// Rows of a table that are wrong in the same way, as one wrong word in a roster makes them: the first few, and how
+/// many more there are.
+std::vector<Diagnostic> grouped(std::vector<Diagnostic> sorted) {
+  struct Alike {
+    std::size_t count = 0;
+    int last_line = 0;
+    std::size_t told = 0;
+  };
+  std::map<std::pair<std::string, std::string>, Alike> kinds;
+  std::vector<Alike*> kind;
+  for (const Diagnostic& diagnostic : sorted) {
+    const bool of_table =
+        diagnostic.severity == Severity::error && diagnostic.key_path.empty() && diagnostic.position.line > 0;
+    kind.push_back(of_table ? &kinds[{diagnostic.position.file, kind_of(diagnostic.text)}] : nullptr);
+    if (!of_table) continue;
+    ++kind.back()->count;
+    kind.back()->last_line = diagnostic.position.line;
+  }
+  std::vector<Diagnostic> out;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    Alike* alike = kind[i];
+    // One line more says no less than "and 1 more".
+    if (alike != nullptr && alike->count > kShownAlike + 1 && ++alike->told > kShownAlike) {
+      if (alike->told > kShownAlike + 1) continue;
+      sorted[i].text = "and " + std::to_string(alike->count - kShownAlike) +
+                       " more like this: " + std::exchange(sorted[i].text, {}) + "; the last in line " +
+                       std::to_string(alike->last_line);
+    }
+    out.push_back(std::move(sorted[i]));
+  }
+  return out;
+}
+
 /// The errors, without the warnings, and not without end.
 Diagnostics bounded(const Diagnostics& all, const std::string& file) {
   Diagnostics out;
   std::size_t errors = 0;
-  for (Diagnostic& diagnostic : all.sorted()) {
+  for (Diagnostic& diagnostic : grouped(all.sorted())) {
     if (diagnostic.severity != Severity::error || errors++ >= kMostErrors) continue;
     out.add(std::move(diagnostic));
   }

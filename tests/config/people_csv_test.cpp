@@ -136,6 +136,28 @@ TEST_F(PeopleCsv, WantsTheGroupsOfTheShowFileWhereThereAreAny) {
             "roster.csv:3:3: error: no group has the name \"lft\" (did you mean \"left\"?)\n");
 }
 
+TEST_F(PeopleCsv, RowsThatAreWrongInTheSameWayAreToldOnce) {
+  std::string roster = "id,radius\n";
+  std::string cells = "performer,cell\n";
+  for (int i = 1; i <= 400; ++i) {
+    roster += std::to_string(i) + "," + (i == 200 ? "99 m" : "0." + std::to_string(i)) + "\n";
+    cells += std::to_string(i) + ",Z" + std::to_string(i) + "\n";
+  }
+  EXPECT_EQ(errors(roster, cells),
+            "a.csv:2:3: error: the cell Z1 is off the grid (A1 to D3)\n"
+            "a.csv:3:3: error: the cell Z2 is off the grid (A1 to D3)\n"
+            "a.csv:4:3: error: the cell Z3 is off the grid (A1 to D3)\n"
+            "a.csv:5:3: error: and 397 more like this: the cell Z4 is off the grid; the last in line 401 (A1 to D3)\n"
+            "roster.csv:2:3: error: \"0.1\" has no unit (write for example \"0.5 m\"; units: m, cm, mm, ft, in)\n"
+            "roster.csv:3:3: error: \"0.2\" has no unit (write for example \"0.5 m\"; units: m, cm, mm, ft, in)\n"
+            "roster.csv:4:3: error: \"0.3\" has no unit (write for example \"0.5 m\"; units: m, cm, mm, ft, in)\n"
+            "roster.csv:5:3: error: and 396 more like this: \"0.4\" has no unit; the last in line 401 (write for "
+            "example \"0.5 m\"; units: m, cm, mm, ft, in)\n"
+            "roster.csv:201:5: error: \"99 m\" is out of range (above 0, at most 10 m)\n"
+            "show.yaml:4:20: error: performers.from: 400 performers and only 11 cells that are not blocked (a larger "
+            "grid, or fewer people)\n");
+}
+
 TEST_F(PeopleCsv, RefusesWhatIsNoText) {
   EXPECT_EQ(errors(std::string("id\na\0\n", 6), "performer,col,row\n"),
             "roster.csv:2:2: error: a NUL byte (a CSV file is UTF-8 text)\n");
