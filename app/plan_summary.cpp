@@ -113,10 +113,19 @@ std::string shortest_text(const Show& show, const planner::Planned& planned) {
     const Section& section = show.sections[i];
     out += fmt::format("section {}: ", section.name);
     const double has = section.duration_counts;
-    out += has > 0
-               ? fmt::format("{:.0f} counts are the least (it has {:g})", std::ceil(shortest->counts), tidy_count(has))
-               : fmt::format("{:.0f} counts are the least for the walk into it", std::ceil(shortest->counts));
-    out += shortest->limited_by.empty() ? "\n" : fmt::format("; limited by {}\n", shortest->limited_by);
+    const double least = std::ceil(shortest->counts);
+    if (has > 0 && least > has) {
+      // Most films are faster than people; that is no error and needs no thousand counts.
+      out += fmt::format(
+          "the film is faster than people walk in {:g} counts, so they stand as near to it as they come; a longer "
+          "duration or a higher max_speed brings them nearer (every place would be reached with {:.0f} counts)",
+          tidy_count(has), least);
+    } else if (has > 0) {
+      out += fmt::format("could be as short as {:.0f} counts (it has {:g})", least, tidy_count(has));
+    } else {
+      out += fmt::format("the walk into it could be as short as {:.0f} counts", least);
+    }
+    out += shortest->limited_by.empty() ? "\n" : fmt::format("; the hardest walk: {}\n", shortest->limited_by);
   }
   return out;
 }

@@ -51,7 +51,16 @@ TEST(PlanSummary, TellsWalksClearanceSpeedLagAndNotes) {
             "show                      2           1.0 m (2)     2 m    2.000 m  1.00 m/s          1 of 1\n"
             "\n"
             "section walk: scaled to 0.8\n"
-            "section walk: 3 counts are the least (it has 4); limited by performer 2 from C1 to D1\n");
+            "section walk: could be as short as 3 counts (it has 4); the hardest walk: performer 2 from C1 to D1\n");
+}
+
+TEST(PlanSummary, AFilmThatIsFasterThanPeopleIsNoReproach) {
+  planner::Planned planned = two_people();
+  planned.shortest[0]->counts = 1125.4;
+  EXPECT_EQ(shortest_text(show(), planned),
+            "section walk: the film is faster than people walk in 4 counts, so they stand as near to it as they come; "
+            "a longer duration or a higher max_speed brings them nearer (every place would be reached with 1126 "
+            "counts); the hardest walk: performer 2 from C1 to D1\n");
 }
 
 TEST(PlanSummary, ALagThatIsNotToleratedIsCounted) {
