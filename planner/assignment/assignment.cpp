@@ -177,6 +177,32 @@ Assignment assign_where_common_points_stay(std::span<const Point> sources, std::
   return result;
 }
 
+/// The median of what the arcs of one source differ by.
+Value typical_spread(const ArcRows& rows) {
+  std::vector<Value> spreads;
+  for (std::uint32_t i = 0; i < rows.size(); ++i) {
+    if (rows.first[i + 1] - rows.first[i] < 2) continue;
+    const auto [least, most] =
+        std::ranges::minmax(std::span(rows.cost).subspan(rows.first[i], rows.first[i + 1] - rows.first[i]));
+    spreads.push_back(most - least);
+  }
+  if (spreads.empty()) return 0;
+  const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
+  std::ranges::nth_element(spreads, middle);
+  return *middle;
+}
+
+/// Ever smaller steps, from what the dearest arc costs to a small part of what matters to most.
+void hold_auctions(const ArcRows& rows, Value dearest, Matching& matching) {
+  constexpr Value kShrink = 5;
+  constexpr Value kFinest = 10'000;
+  constexpr std::uint64_t kMostBids = 40;  // a source
+  const Value last = typical_spread(rows) / kFinest;
+  for (Value step = dearest / 8; step > std::max<Value>(last, 1); step /= kShrink) {
+    hold_auction(rows, step, kMostBids * rows.size(), matching);
+  }
+}
+
 double longest_walk(std::span<const Point> sources, std::span<const Point> targets,
                     std::span<const std::uint32_t> target_of) {
   double longest = 0;
@@ -220,24 +246,24 @@ std::optional<Assignment> assign_sparse(std::uint32_t size, std::span<const Arc>
   Matching matching;
   matching.price.assign(size, 0);
   matching.target_of.assign(size, assignment::kNobody);
-  const auto most = static_cast<Value>(widest * scale);
-  for (Value step = most / 8; step > most / 4096; step /= 5)
-    hold_auction(rows, std::max<Value>(step, 1), 10ULL * size, matching);
+  hold_auctions(rows, static_cast<Value>(widest * scale), matching);
   Phases phases(rows, matching, false);
   phases.tighten();
   if (!phases.run()) return std::nullopt;
   Assignment result;
   result.target_of = matching.target_of;
-  double dual = 0;
+  Value primal = 0;
+  Value dual = 0;
   for (std::uint32_t i = 0; i < size; ++i) {
     result.source_value.push_back(static_cast<double>(matching.value[i]) / scale);
     result.target_value.push_back(-static_cast<double>(matching.price[i]) / scale);
     const auto arc = std::ranges::lower_bound(arcs, std::pair(i, matching.target_of[i]), {},
                                               [](const Arc& a) { return std::pair(a.source, a.target); });
     result.cost += arc->cost;
-    dual += static_cast<double>(matching.value[i] - matching.price[i]) / scale;
+    primal += static_cast<Value>(std::nearbyint(arc->cost * scale));
+    dual += matching.value[i] - matching.price[i];
   }
-  result.gap = result.cost - dual;
+  result.gap = static_cast<double>(primal - dual) / scale;
   return result;
 }
 
