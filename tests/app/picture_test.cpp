@@ -7,6 +7,7 @@
 #include <cairo.h>
 #include <gtest/gtest.h>
 
+#include "app/paper.hpp"
 #include "core/check.hpp"
 #include "tests/support/plan_builder.hpp"
 
@@ -149,6 +150,53 @@ TEST(PictureName, SortsAndHasNoSpecialLetters) {
   const Scene scene;
   EXPECT_EQ(picture_name(scene.plan, FormationIndex(0)), "001-a-b-1.png");
   EXPECT_EQ(picture_name(scene.plan, FormationIndex(1)), "002-a-b-2.png");
+}
+
+/// A film of one pixel a cell that shows the left half of the floor.
+Film left_half() {
+  Film film;
+  film.width = 10;
+  film.height = 4;
+  Mask mask(10, 4);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) mask.set(x, y);
+  }
+  film.frames = {mask, mask};
+  return film;
+}
+
+TEST(Picture, WhoStandsOutsideOfThePictureIsARing) {
+  Scene scene;
+  const Film film = left_half();
+  const Frame frame(scene.plan.stage.grid);
+  FilmPlacement placement;
+  placement.stage_to_frame = {1, 0, -frame.low.x, 0, -1, frame.high.y};
+  scene.plan.sections[0].film = placement;
+  for (Formation& formation : scene.plan.formations) formation.frame = 0;
+  const Picture inside(formation_png(scene.plan, scene.show, FormationIndex(0), &film));
+  EXPECT_EQ(inside.at(56 + 80, 84 + 3 * 160 + 80), kGreen);
+  const Picture outside(formation_png(scene.plan, scene.show, FormationIndex(1), &film));
+  EXPECT_NE(outside.at(56 + 9 * 160 + 80, 84 + 80), kGreen) << "hollow";
+  EXPECT_EQ(outside.at(56 + 9 * 160 + 80 - 17, 84 + 80), kGreen) << "with an edge";
+}
+
+TEST(Picture, SaysWhatItsMarksMean) {
+  const Scene scene;
+  const Picture picture(formation_png(scene.plan, scene.show, FormationIndex(0), nullptr));
+  bool marked = false;
+  for (int y = 84 + 640 + 56; y < 84 + 640 + 70; ++y) marked = marked || picture.at(56 + 8, y) == kGreen;
+  EXPECT_TRUE(marked) << "a dot as those of the picture, below it";
+}
+
+TEST(Paper, WordsAreShortenedToTheRoomThatTheyHave) {
+  const Paper paper(*Grid::make(GridKind::square, 10, 4, 1), {0, 0, 0});
+  const std::string name = "Amelia Pond";
+  EXPECT_EQ(paper.shortened(name, 13, paper.width_of(name, 13)), name);
+  EXPECT_EQ(paper.shortened(name, 13, paper.width_of(name, 13) - 1), "Amelia");
+  const std::string part = paper.shortened("\u00c4\u00e4\u00e4\u00e4\u00e4\u00e4\u00e4", 13, 40);
+  EXPECT_LE(paper.width_of(part, 13), 40);
+  EXPECT_TRUE(part.ends_with("\u00e4\u2026")) << part;
+  EXPECT_EQ(paper.shortened(name, 13, 3), "");
 }
 
 }  // namespace
