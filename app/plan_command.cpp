@@ -6,10 +6,12 @@
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/picture.hpp"
 #include "app/plan_step.hpp"
@@ -24,6 +26,7 @@ struct Options {
   PlanChoice choice;
   std::string output;
   std::string pictures;
+  bool timing = false;
 };
 
 constexpr const char* kPictureList = "pictures.txt";  // what has been drawn into the folder, a name a line
@@ -68,12 +71,30 @@ Status<> write_pictures(Session& session, const PlannedShow& planned, const std:
   return config::write_file(listed, names);
 }
 
+/// How long what took, beside the result.
+std::string with_timing(Session& session, std::string json_text) {
+  const auto& stages = session.times()->finish();
+  const double peak_mb = peak_memory_mb();
+  if (!session.json) {
+    session.note(to_text(stages, peak_mb));
+    return json_text;
+  }
+  auto out = nlohmann::ordered_json::parse(json_text);
+  for (const auto& [stage, time_s] : stages) out["timing_s"][stage] = time_s;
+  out["peak_mb"] = peak_mb;
+  return out.dump(1) + "\n";
+}
+
 int run(Session& session, const Options& options) {
+  const SteadyClock clock;
+  if (options.timing) session.time_stages(clock);
+  session.enter("reading");
   auto planned = plan_anew(session, options.choice);
   if (!planned) return session.fail(planned.error());
   const auto refused = refusal_of(planned->planned);
   const std::string file = options.output.empty() ? plan_file_beside(options.choice.show) : options.output;
   if (auto spared = spare_inputs(planned->loaded, file); !spared) return session.fail(spared.error());
+  session.enter("writing");
   if (!refused) {
     if (auto done = config::save_plan(planned->plan(), file); !done) return session.fail(done.error());
   }
@@ -81,8 +102,11 @@ int run(Session& session, const Options& options) {
   if (!options.pictures.empty()) {
     if (auto done = write_pictures(session, *planned, options.pictures); !done) return session.fail(done.error());
   }
-  session.print(session.json ? plan_json(planned->loaded.show, planned->planned)
-                             : plan_text(planned->loaded.show, planned->planned));
+  session.enter("summary");
+  std::string result = session.json ? plan_json(planned->loaded.show, planned->planned)
+                                    : plan_text(planned->loaded.show, planned->planned);
+  if (options.timing) result = with_timing(session, std::move(result));
+  session.print(result);
   if (refused) return session.fail(*refused);
   session.note(fmt::format("wrote {}", file));
   return 0;
@@ -100,6 +124,7 @@ void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
       ->add_option("--threads", options->choice.threads,
                    "plan with so many threads (the plan is the same for any number)")
       ->check(CLI::Range(1, 1024));
+  command->add_flag("--timing", options->timing, "tell how long reading, decoding and each stage of planning took");
   session.add_options(*command, true);
   command->footer(
       "A plan that somebody could not walk, or in which people would come too close, is refused with who, where and\n"

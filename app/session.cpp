@@ -92,7 +92,12 @@ planner::Progress Session::progress() {
   return out;
 }
 
+void Session::enter(std::string_view stage) {
+  if (times_) times_->enter(stage);
+}
+
 void Session::tell(std::string_view stage, double share) {
+  enter(stage);
   if (quiet) return;
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (!terminal && !plain_progress) return;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "app/stage_times.hpp"
 #include "core/diagnostic.hpp"
 #include "core/result.hpp"
 #include "planner/progress.hpp"
@@ -45,6 +47,10 @@ class Session {
   /// --progress, else nothing.
   [[nodiscard]] planner::Progress progress();
   void tell(std::string_view stage, double share);
+  /// From here on it is measured how long each stage takes that is told of or entered.
+  void time_stages(const Clock& clock) { times_.emplace(clock); }
+  void enter(std::string_view stage);
+  [[nodiscard]] std::optional<StageTimes>& times() { return times_; }
   /// Takes the progress line away.
   void clear_line();
 
@@ -52,6 +58,7 @@ class Session {
   const std::atomic<bool>& stop_;
   bool line_open_ = false;
   std::string last_told_;
+  std::optional<StageTimes> times_;
 };
 
 [[nodiscard]] int exit_status(ErrorKind kind);
