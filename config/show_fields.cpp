@@ -384,7 +384,9 @@ const Listing& cue_listing() {
           {.key = "name", .type = Type::text, .doc = "For the console.", .otherwise = "the section's name"},
           {.key = "continue",
            .type = Type::choice,
-           .doc = "What brings the next cue: GO, this cue's start (auto-continue) or its end (auto-follow).",
+           .doc =
+               "What brings the next cue: GO; `auto-continue`: `post_wait` after this cue's start, but not before its "
+               "section ends; `auto-follow`: `post_wait` after its end. The next cue's `pre_wait` comes on top.",
            .fallback = "manual",
            .choices = {"manual", "auto-continue", "auto-follow"}},
           {.key = "pre_wait",
@@ -394,7 +396,7 @@ const Listing& cue_listing() {
            .range = {0, 86'400}},
           {.key = "post_wait",
            .type = Type::time,
-           .doc = "Added before an automatic next cue.",
+           .doc = "Before an automatic next cue, counted as `continue` says.",
            .fallback = "0 s",
            .range = {0, 86'400}},
           {.key = "notes", .type = Type::text, .doc = "For whoever calls the show.", .otherwise = "none"},

@@ -154,6 +154,21 @@ TEST(CueEngine, PostWaitStandsAtTheEndOfTheSetBeforeTheNextCue) {
   EXPECT_EQ(bench.engine->state(0), CueState::done);
 }
 
+TEST(CueEngine, AutoContinueCountsItsPostWaitFromTheStartOfTheCue) {
+  auto cues = following();
+  cues[0].continue_mode = ContinueMode::auto_continue;
+  cues[0].post_wait = milliseconds(5000);
+  Bench bench(cues);
+  bench.engine->go(bench.clock.now());
+  bench.run_until(instant_at(4));
+  EXPECT_EQ(bench.engine->target().next_at, instant_at(5)) << "5 s after the start, 1 s after the end of the section";
+  cues[0].post_wait = milliseconds(1000);
+  Bench early(cues);
+  early.engine->go(early.clock.now());
+  early.run_until(instant_at(3.9));
+  EXPECT_EQ(early.engine->target().next_at, instant_at(4)) << "nobody leaves a section that is not over";
+}
+
 TEST(CueEngine, AfterTheLastCueThereIsNothingLeft) {
   Bench bench(following());
   bench.engine->go(bench.clock.now());
