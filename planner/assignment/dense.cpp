@@ -31,7 +31,6 @@ class DenseSearch {
 
   Matching solve() {
     reduce_columns();
-    reduce_rows();
     for (std::uint32_t source = 0; source < size_; ++source) {
       if (matching_.target_of[source] == kNobody && !augment(source)) break;
     }
@@ -41,38 +40,15 @@ class DenseSearch {
       matching_.price[target] = -static_cast<Value>(paid_[target]);
     }
     for (std::uint32_t source = 0; source < size_; ++source) {
-      const double least = two_best(source).best;
+      const double* row = costs_.row(source);
+      double least = kInfinity;
+      for (std::uint32_t target = 0; target < size_; ++target) least = std::min(least, row[target] - paid_[target]);
       if (least < kInfinity) matching_.value[source] = static_cast<Value>(least);
     }
     return std::move(matching_);
   }
 
  private:
-  struct TwoBest {
-    double best = kInfinity;
-    double second = kInfinity;
-    std::uint32_t target = 0;
-    std::uint32_t second_target = 0;
-  };
-  [[nodiscard]] TwoBest two_best(std::uint32_t source) const {
-    const double* row = costs_.row(source);
-    TwoBest found;
-    for (std::uint32_t target = 0; target < size_; ++target) {
-      const double value = row[target] - paid_[target];
-      if (!(value < found.second)) continue;
-      if (value < found.best) {
-        found.second = found.best;
-        found.second_target = found.target;
-        found.best = value;
-        found.target = target;
-      } else {
-        found.second = value;
-        found.second_target = target;
-      }
-    }
-    return found;
-  }
-
   void reduce_columns() {
     std::vector<double> cheapest(costs_.width(), 0);
     std::copy_n(costs_.row(0), costs_.width(), paid_.begin());
@@ -92,44 +68,6 @@ class DenseSearch {
       } else if (matching_.target_of[source] == kNobody) {
         match(source, target);
       }
-    }
-  }
-
-  /// Every free source takes its best target, which is paid as much less as makes the second best as good; who is
-  /// displaced goes on, at once where something was gained by it, else in the next round.
-  void reduce_rows() {
-    constexpr int kRounds = 2;
-    std::vector<std::uint32_t> free;
-    for (std::uint32_t source = 0; source < size_; ++source) {
-      if (matching_.target_of[source] == kNobody) free.push_back(source);
-    }
-    for (int round = 0; round < kRounds; ++round) {
-      std::vector<std::uint32_t> later;
-      std::size_t steps = std::size_t{4} * size_;  // a few could go on displacing each other for long
-      for (const std::uint32_t first : free) {
-        std::uint32_t source = first;
-        while (source != kNobody) {
-          const TwoBest found = two_best(source);
-          if (!(found.second < kInfinity) || steps == 0) {
-            later.push_back(source);
-            break;
-          }
-          --steps;
-          const bool gained = found.best < found.second;
-          std::uint32_t target = found.target;
-          if (gained) {
-            paid_[target] -= found.second - found.best;
-          } else if (matching_.source_of[target] != kNobody) {
-            target = found.second_target;
-          }
-          const std::uint32_t displaced = matching_.source_of[target];
-          match(source, target);
-          if (displaced != kNobody) matching_.target_of[displaced] = kNobody;
-          if (displaced != kNobody && !gained) later.push_back(displaced);
-          source = gained ? displaced : kNobody;
-        }
-      }
-      free = std::move(later);
     }
   }
 

@@ -22,9 +22,9 @@ class CostTable {
   std::vector<double> costs_;
 };
 
-/// The cheapest perfect matching of a full table of costs, and its dual solution, by column reduction, augmenting row
-/// reduction and shortest augmenting paths (Jonker and Volgenant 1987, without their reduction transfer). The right
-/// tool below a hundred. O(size^3)
+/// The cheapest perfect matching of a full table of costs, and its dual solution, by shortest augmenting paths after a
+/// column reduction (Jonker and Volgenant 1987, without their reductions of rows, which make prices too uneven to start
+/// an auction from). The right tool below a hundred. O(size^3)
 ///
 /// @param costs whole numbers, 0 <= cost, size x cost < 2^50, so that doubles hold every sum exactly; infinity:
 /// forbidden
