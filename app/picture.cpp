@@ -168,8 +168,9 @@ class Drawing : private Paper {
 
   [[nodiscard]] Ink colour_of(std::size_t performer, double alpha) const {
     Colour colour = show_.default_colour;
-    if (performer < show_.performers.size() && show_.performers[performer].group) {
-      colour = show_.groups.at(show_.performers[performer].group->at()).colour;
+    if (performer < show_.performers.size()) {
+      const std::optional<GroupIndex>& group = show_.performers[performer].group;
+      if (group) colour = show_.groups.at(group->at()).colour;
     }
     return {colour.red / 255.0, colour.green / 255.0, colour.blue / 255.0, alpha};
   }
@@ -229,8 +230,10 @@ class Drawing : private Paper {
     const StageToFrame& m = placement()->stage_to_frame;
     const Point centre = grid_.centre(cell);
     for (int i = 0; i < kProbes * kProbes; ++i) {
-      const double x = centre.x + (i % kProbes - kProbes / 2) * grid_.pitch_m() / kProbes;
-      const double y = centre.y + (i / kProbes - kProbes / 2) * grid_.pitch_m() / kProbes;
+      const int across = i % kProbes - kProbes / 2;
+      const int up = i / kProbes - kProbes / 2;
+      const double x = centre.x + across * grid_.pitch_m() / kProbes;
+      const double y = centre.y + up * grid_.pitch_m() / kProbes;
       const int column = static_cast<int>(std::floor(m[0] * x + m[1] * y + m[2]));
       const int row = static_cast<int>(std::floor(m[3] * x + m[4] * y + m[5]));
       if (column < 0 || row < 0 || column >= picture.width() || row >= picture.height()) continue;

@@ -255,12 +255,6 @@ std::span<const LookIndex> CueSchedule::looks_of(std::size_t k, NodeIndex node) 
   return std::span(table_).subspan((k * nodes_ + node.at()) * kChannelsPerNode, kChannelsPerNode);
 }
 
-std::size_t CueSchedule::switch_at(Instant show_time) const {
-  const auto after = std::upper_bound(switches_.begin(), switches_.end(), show_time,
-                                      [](Instant t, const Switch& s) { return t < s.time; });
-  return after == switches_.begin() ? 0 : static_cast<std::size_t>(after - switches_.begin()) - 1;
-}
-
 std::uint8_t plan_byte_of(const Plan& plan) {
   unsigned byte = 0;
   const std::string& hash = plan.show_hash;

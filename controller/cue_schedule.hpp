@@ -44,8 +44,6 @@ class CueSchedule {
   [[nodiscard]] const std::vector<Switch>& switches() const { return switches_; }
   /// All 32 channels of a node from switch `k` until the next; unused channels are dark.
   [[nodiscard]] std::span<const LookIndex> looks_of(std::size_t k, NodeIndex node) const;
-  /// The last switch at or before a show time; the first one before it.
-  [[nodiscard]] std::size_t switch_at(Instant show_time) const;
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
 

@@ -16,9 +16,6 @@ namespace footlight::drivers {
 /// Latch sequence on every wire: 1..240, wrapping; 0 means none (docs/wire-protocol.md, section 1).
 using Sequence = std::uint8_t;
 inline constexpr Sequence kLastSequence = 240;
-[[nodiscard]] constexpr Sequence next_sequence(Sequence sequence) {
-  return sequence >= kLastSequence ? Sequence{1} : static_cast<Sequence>(sequence + 1);
-}
 
 /// CRC-16/CCITT-FALSE: what nodes return of the looks they show.
 [[nodiscard]] std::uint16_t looks_crc(std::span<const LookIndex> looks);
@@ -86,7 +83,7 @@ class Driver {
   [[nodiscard]] virtual Duration heartbeat_time() const = 0;  ///< 0 where there is no lease
   /// Heartbeats that the nodes send by themselves in one kHeartbeatPeriod.
   [[nodiscard]] virtual Duration node_heartbeats_time() const { return {}; }
-  [[nodiscard]] virtual Duration upload_time() const = 0;     ///< one look; 0 where the device has no look table
+  [[nodiscard]] virtual Duration upload_time() const = 0;  ///< one look; 0 where the device has no look table
 
   /// True when another operation would be accepted now.
   [[nodiscard]] virtual bool ready() const = 0;

@@ -33,6 +33,13 @@ CueSchedule schedule_of(std::size_t nodes, std::size_t switches,
 
 LookIndex every_switch(std::size_t k, std::size_t n) { return static_cast<LookIndex>(1 + (k + n) % 20); }
 
+/// The last switch at or before a show time; the first one before it.
+std::size_t switch_at(const CueSchedule& schedule, Instant show_time) {
+  const auto& switches = schedule.switches();
+  const auto after = std::ranges::upper_bound(switches, show_time, {}, &Switch::time);
+  return after == switches.begin() ? 0 : static_cast<std::size_t>(after - switches.begin()) - 1;
+}
+
 /// A loop on a fake bus; the show runs by the clock.
 struct Bench {
   Bench(CueSchedule plan, std::size_t nodes, bool canopen)
@@ -48,7 +55,7 @@ struct Bench {
 
   [[nodiscard]] BusTarget target() const {
     BusTarget target;
-    target.current = stands_at.value_or(schedule.switch_at(now));
+    target.current = stands_at.value_or(switch_at(schedule, now));
     target.next = std::min(target.current + 1, schedule.switches().size() - 1);
     if (target.next != target.current && !stands_at) target.next_at = schedule.switches()[target.next].time;
     return target;
@@ -240,7 +247,7 @@ TEST_P(AnyBus, NothingIsStartedThatWouldNotEndBeforeTheLatch) {
   bench.run_to_switch(9);
   for (std::size_t i = 1; i < bench.driver.log.size(); ++i) {
     const auto& operation = bench.driver.log[i];
-    const Instant due = bench.schedule.switches()[bench.schedule.switch_at(operation.at) + 1].time;
+    const Instant due = bench.schedule.switches()[switch_at(bench.schedule, operation.at) + 1].time;
     if (operation.kind == Kind::latch || operation.at < bench.schedule.switches()[0].time) continue;
     const Duration time = operation.kind == Kind::preload ? milliseconds(4)
                           : operation.kind == Kind::ask   ? milliseconds(3)

@@ -176,14 +176,6 @@ TEST(CueSchedule, ALampMisleadsWhenItIsANearGoalWithTheSameLook) {
   EXPECT_EQ(confusion.after, 0U);
 }
 
-TEST(CueSchedule, FindsTheSwitchOfAnInstant) {
-  const CueSchedule schedule = build(three_people());
-  EXPECT_EQ(schedule.switch_at(instant_at(-5)), 0U);
-  EXPECT_EQ(schedule.switch_at(instant_at(3.9)), 2U);
-  EXPECT_EQ(schedule.switch_at(instant_at(4)), 3U);
-  EXPECT_EQ(schedule.switch_at(instant_at(99)), 7U);
-}
-
 TEST(CueSchedule, RefusesAPlanThatIsNotProved) {
   SmallShow small = three_people();
   small.plan.valid = false;

@@ -34,12 +34,5 @@ TEST(LooksCrc, TellsExchangedChannels) {
   EXPECT_NE(looks_crc(std::vector<LookIndex>{1, 2}), looks_crc(std::vector<LookIndex>{2, 1}));
 }
 
-TEST(Sequence, WrapsFrom240To1) {
-  EXPECT_EQ(next_sequence(0), 1);
-  EXPECT_EQ(next_sequence(1), 2);
-  EXPECT_EQ(next_sequence(239), 240);
-  EXPECT_EQ(next_sequence(240), 1);
-}
-
 }  // namespace
 }  // namespace footlight::drivers
