@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -142,7 +143,9 @@ std::vector<BusNeed> bus_needs(const CueSchedule& schedule, const Rig& rig,
   // The opening is lit before the show starts and may take as long as it likes.
   for (std::size_t k = 2; k < switches.size(); ++k) {
     Duration available = switches[k].time - switches[k - 1].time;
-    if (switches[k - 1].settled) available += gaps[switches[k - 1].cue.value()];
+    // Where a set ends, the show stands; the opening, which is nobody's cue, is not among them.
+    const std::optional<std::size_t>& cue = switches[k - 1].cue;
+    if (switches[k - 1].settled && cue) available += gaps[*cue];
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
       needs.push_back(need_of(schedule, rig, BusIndex::of(b), k, *drivers[b], available));
     }
