@@ -212,22 +212,23 @@ const Listing& sampling_listing() {
 }
 
 const Listing& region_listing() {
-  static const Listing kListing{"sections[].planner.region",
-                                "Bounds of a region of people who move together.",
-                                {
-                                    {.key = "size",
-                                     .type = Type::integer,
-                                     .doc = "Most people in a region of the finest division.",
-                                     .fallback = "60",
-                                     .range = {1, 100'000}},
-                                    {.key = "variance",
-                                     .type = Type::area,
-                                     .doc = "Largest mean squared distance from a region's anchor; a bare number "
-                                            "means m2.",
-                                     .fallback = "30 m2",
-                                     .range = {0, kMost, true},
-                                     .bare = true},
-                                }};
+  static const Listing kListing{
+      "sections[].planner.region",
+      "Bounds of a region of people who move together.",
+      {
+          {.key = "size",
+           .type = Type::integer,
+           .doc = "Most people in a region of the first division; a layer more divides it into quarters.",
+           .fallback = "60",
+           .range = {1, 100'000}},
+          {.key = "variance",
+           .type = Type::area,
+           .doc = "Largest mean squared distance from a region's anchor; a bare number "
+                  "means m2.",
+           .fallback = "30 m2",
+           .range = {0, kMost, true},
+           .bare = true},
+      }};
   return kListing;
 }
 

@@ -85,7 +85,7 @@ enum class PairingCost { squared, euclidean };
 struct PlannerOptions {
   PlannerModel model = PlannerModel::hierarchical;
   int layers = 2;                  ///< hierarchical: 1..6
-  int region_size = 60;            ///< most people in a region of the finest division (T_n)
+  int region_size = 60;            ///< most people in a region of the first division (T_n)
   double region_variance_m2 = 30;  ///< largest mean squared distance from a region's anchor (T_v), m^2
   PairingCost cost = PairingCost::squared;
 };

@@ -16,8 +16,8 @@ namespace {
 
 using Positions = std::vector<std::uint32_t>;
 
-/// Coarsest regions are larger by this for each layer above two.
-constexpr int kRegionGrowth = 4;
+/// The regions of each further division are so many times smaller.
+constexpr int kDivision = 4;
 
 class Matcher {
  public:
@@ -28,20 +28,15 @@ class Matcher {
   Positions run() {
     Positions everybody(sources_.size());
     std::iota(everybody.begin(), everybody.end(), 0U);
-    match(everybody, everybody, options_.layers);
+    match(everybody, everybody, options_.layers, {options_.region_size, options_.region_variance_m2});
     return std::move(target_of_);
   }
 
  private:
-  void match(const Positions& from, const Positions& to, int layers) {
+  void match(const Positions& from, const Positions& to, int layers, const RegionLimits& limits) {
     if (layers <= 1 || static_cast<int>(from.size()) <= 3) {
       match_persons(from, to);
       return;
-    }
-    RegionLimits limits{options_.region_size, options_.region_variance_m2};
-    for (int layer = 2; layer < layers; ++layer) {
-      limits.most_people *= kRegionGrowth;
-      limits.variance_m2 *= kRegionGrowth;
     }
     const auto from_regions = divide(sources_, from, limits);
     const auto to_regions = divide(targets_, to, limits);
@@ -49,10 +44,11 @@ class Matcher {
     std::vector<Load> demand;
     for (const Region& r : from_regions) supply.push_back({r.anchor, static_cast<int>(r.members.size())});
     for (const Region& r : to_regions) demand.push_back({r.anchor, static_cast<int>(r.members.size())});
-    const auto shipments = transport(supply, demand);
+    const auto shipments = transport(supply, demand, options_.cost);
     const auto leaving = split(sources_, from_regions, shipments, &Shipment::from, &Shipment::to, demand);
     const auto arriving = split(targets_, to_regions, shipments, &Shipment::to, &Shipment::from, supply);
-    for (std::size_t s = 0; s < shipments.size(); ++s) match(leaving[s], arriving[s], layers - 1);
+    const RegionLimits next{std::max(1, limits.most_people / kDivision), limits.variance_m2 / kDivision};
+    for (std::size_t s = 0; s < shipments.size(); ++s) match(leaving[s], arriving[s], layers - 1, next);
   }
 
   [[nodiscard]] std::vector<Region> divide(std::span<const CellIndex> cells, const Positions& part,
@@ -95,7 +91,7 @@ class Matcher {
         const Point place = grid_.centre(cells[members[m]]);
         for (std::uint32_t seat = 0; seat < seats.size(); ++seat) {
           const Point anchor = others[shipments[seats[seat]].*other].anchor;
-          arcs.push_back({m, seat, squared_length(place - anchor)});
+          arcs.push_back({m, seat, pairing_cost(options_.cost, place, anchor)});
         }
       }
       const auto seated = assign_sparse(static_cast<std::uint32_t>(members.size()), arcs);

@@ -12,8 +12,9 @@ namespace footlight::planner {
 
 /// Who goes where between two formations, Li 2020 Algorithms 1-2: both are divided into regions, people are carried
 /// from regions to regions, the parts are divided again with smaller regions, and in the finest parts persons are
-/// matched exactly. `options.layers` counts the persons' level: 1 matches everybody at once, 2 has one division.
-/// The coarsest division of more layers has regions four times as large for each layer above two.
+/// matched exactly. `options.layers` counts the persons' level: 1 matches everybody at once, 2 has one division into
+/// regions of `options.region_size`, each layer more divides those again, into regions a quarter as large (T_n and
+/// T_v). `options.cost` is that between anchors, between people and anchors, and between people and cells.
 ///
 /// @param sources, targets  the same number of distinct cells
 /// @return position in `targets` for each source, a bijection. Conflicts at the borders of the parts are

@@ -14,12 +14,12 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 /// Residual network of a dense transport problem. Nodes 0..R-1 are sources, R..R+S-1 are targets.
 class Network {
  public:
-  Network(std::span<const Load> from, std::span<const Load> to)
+  Network(std::span<const Load> from, std::span<const Load> to, PairingCost cost)
       : rows_(from.size()), columns_(to.size()), cost_(rows_ * columns_), flow_(rows_ * columns_, 0) {
     for (std::size_t i = 0; i < rows_; ++i) {
       supply_.push_back(from[i].people);
       for (std::size_t j = 0; j < columns_; ++j) {
-        cost_[i * columns_ + j] = squared_length(from[i].anchor - to[j].anchor);
+        cost_[i * columns_ + j] = pairing_cost(cost, from[i].anchor, to[j].anchor);
       }
     }
     for (const Load& load : to) demand_.push_back(load.people);
@@ -138,8 +138,12 @@ class Network {
 
 }  // namespace
 
-std::vector<Shipment> transport(std::span<const Load> from, std::span<const Load> to) {
-  Network network(from, to);
+double pairing_cost(PairingCost cost, Point a, Point b) {
+  return cost == PairingCost::squared ? squared_length(a - b) : distance(a, b);
+}
+
+std::vector<Shipment> transport(std::span<const Load> from, std::span<const Load> to, PairingCost cost) {
+  Network network(from, to, cost);
   while (network.augment()) {
   }
   return network.shipments();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/grid.hpp"
+#include "core/show.hpp"
 
 namespace footlight::planner {
 
@@ -24,11 +25,14 @@ struct Shipment {
   friend bool operator==(const Shipment&, const Shipment&) = default;
 };
 
-/// The cheapest way to carry people from regions to regions by the squared distance of the anchors: what takes the
-/// place of a matching between anchors where the two sides differ in number and size of regions (Li 2020, Algorithm 1
-/// line 4, leaves that open). Successive shortest paths with potentials.
+/// What a walk from `a` to `b` costs: its length in m, or the square of it.
+[[nodiscard]] double pairing_cost(PairingCost cost, Point a, Point b);
+
+/// The cheapest way to carry people from regions to regions by the cost between the anchors: what takes the place of a
+/// matching between anchors where the two sides differ in number and size of regions (Li 2020, Algorithm 1 line 4,
+/// leaves that open). Successive shortest paths with potentials.
 /// @param from, to  the same sum of people
 /// @return ascending by (from, to), people > 0. O((R + S)^2) a path, about as many paths as regions
-[[nodiscard]] std::vector<Shipment> transport(std::span<const Load> from, std::span<const Load> to);
+[[nodiscard]] std::vector<Shipment> transport(std::span<const Load> from, std::span<const Load> to, PairingCost cost);
 
 }  // namespace footlight::planner

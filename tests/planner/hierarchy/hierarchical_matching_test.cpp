@@ -85,5 +85,26 @@ TEST(MatchHierarchically, PartsOfThePictureThatOnlyMoveStayTogether) {
   for (std::size_t i = 0; i < from.size(); ++i) EXPECT_EQ(target_of[i], i);
 }
 
+TEST(MatchHierarchically, ALayerMoreDividesRegionsAgainIntoQuarters) {
+  const Grid grid = *Grid::make(GridKind::square, 40, 30, 1.0);
+  std::vector<CellIndex> from;
+  std::vector<CellIndex> to;
+  for (int i = 0; i < 240; ++i) {
+    from.push_back(grid.index({i % 20, i / 20}));
+    to.push_back(grid.index({15 + i % 12, 5 + i / 12}));
+  }
+  PlannerOptions once;
+  once.region_size = 60;
+  once.region_variance_m2 = 30;
+  PlannerOptions twice = once;
+  twice.layers = 3;
+  twice.region_size = 240;
+  twice.region_variance_m2 = 120;
+  EXPECT_EQ(match_hierarchically(grid, from, to, twice), match_hierarchically(grid, from, to, once))
+      << "everybody is one region first";
+  twice.region_size = 60;
+  EXPECT_NE(match_hierarchically(grid, from, to, twice), match_hierarchically(grid, from, to, once));
+}
+
 }  // namespace
 }  // namespace footlight::planner

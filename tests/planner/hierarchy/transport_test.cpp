@@ -15,7 +15,7 @@ namespace {
 TEST(Transport, SplitsARegionWhereTheSidesDiffer) {
   const std::vector<Load> from{{{0, 0}, 10}};
   const std::vector<Load> to{{{-5, 0}, 4}, {{5, 0}, 6}};
-  EXPECT_EQ(transport(from, to), (std::vector<Shipment>{{0, 0, 4}, {0, 1, 6}}));
+  EXPECT_EQ(transport(from, to, PairingCost::squared), (std::vector<Shipment>{{0, 0, 4}, {0, 1, 6}}));
 }
 
 TEST(Transport, IsAsCheapAsTheExactAssignmentOfEverySinglePerson) {
@@ -35,7 +35,7 @@ TEST(Transport, IsAsCheapAsTheExactAssignmentOfEverySinglePerson) {
     const auto to = loads(people);
     double cost = 0;
     int carried = 0;
-    for (const Shipment& s : transport(from, to)) {
+    for (const Shipment& s : transport(from, to, PairingCost::squared)) {
       cost += s.people * squared_length(from[s.from].anchor - to[s.to].anchor);
       carried += s.people;
     }
@@ -52,6 +52,13 @@ TEST(Transport, IsAsCheapAsTheExactAssignmentOfEverySinglePerson) {
     RC_ASSERT(carried == people);
     RC_ASSERT(std::abs(cost - assign_sparse(source, arcs)->cost) < 1e-6);
   }));
+}
+
+TEST(Transport, PlainDistanceLeavesInPlaceWhomTheSquaredOneMoves) {
+  const std::vector<Load> from{{{0, 0}, 5}, {{3, 0}, 5}};
+  const std::vector<Load> to{{{3, 0}, 5}, {{6, 1}, 5}};
+  EXPECT_EQ(transport(from, to, PairingCost::euclidean), (std::vector<Shipment>{{0, 1, 5}, {1, 0, 5}}));
+  EXPECT_EQ(transport(from, to, PairingCost::squared), (std::vector<Shipment>{{0, 0, 5}, {1, 1, 5}}));
 }
 
 }  // namespace
