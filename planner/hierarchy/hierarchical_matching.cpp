@@ -110,7 +110,8 @@ class Matcher {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const std::uint32_t member : members) {
       const Point place = grid_.centre(cells[member]);
-      order.emplace_back(squared_length(place - first) - squared_length(place - second), member);
+      order.emplace_back(pairing_cost(options_.cost, place, first) - pairing_cost(options_.cost, place, second),
+                         member);
     }
     std::sort(order.begin(), order.end());
     const auto to_first = static_cast<std::size_t>(shipments[ends[0]].people);
