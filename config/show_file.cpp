@@ -110,7 +110,7 @@ std::string existing_file(MappingReader& mapping, std::string_view key, const st
                           std::vector<std::string>& files) {
   const auto written = mapping.text(key);
   if (!written) return {};
-  const std::string file = (folder / *written).lexically_normal().string();
+  std::string file = (folder / *written).lexically_normal().string();
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) {
@@ -153,8 +153,9 @@ Status<Diagnostics> settle_film_lengths(Show& show, const std::vector<std::optio
   Diagnostics diagnostics;
   for (std::size_t s = 0; s < films.size(); ++s) {
     Section& section = show.sections[s];
-    if (!std::holds_alternative<VideoSource>(section.from) || section.duration_counts > 0 || !films[s]) continue;
-    const FilmLength& film = *films[s];
+    const std::optional<FilmLength>& length = films[s];
+    if (!std::holds_alternative<VideoSource>(section.from) || section.duration_counts > 0 || !length) continue;
+    const FilmLength& film = *length;
     if (film.frames < 2 || !(film.fps > 0)) {
       diagnostics.error(section.position, section_path(show.sections, section) + ".duration",
                         "the video of section " + in_quotes(section.name) + " has no length of its own",
