@@ -156,8 +156,9 @@ class ShowPlanner {
     const std::size_t people = show_.performers.size();
     std::vector<double> fastest_mps(people, 0.0);
     for (std::size_t k = 0; k < chain.legs.size(); ++k) {
-      const double walked_s = to_seconds(chain.stops[k + 1].arrive - chain.stops[k].depart);
       for (std::size_t p = 0; p < people; ++p) {
+        const Walking when = walking(chain, k, p);
+        const double walked_s = to_seconds(when.end - when.start);
         const Grid& grid = show_.stage.grid;
         const double walk_m = distance(grid.centre(cell_of(chain, k, p)), grid.centre(cell_of(chain, k + 1, p)));
         fastest_mps[p] = std::max(fastest_mps[p], walk_m / walked_s);
@@ -201,6 +202,22 @@ class ShowPlanner {
     return chain.stops[k].cells[slot_[k][performer]];
   }
 
+  struct Walking {
+    Instant start;
+    Instant end;
+  };
+  /// When somebody walks between stop k and the next.
+  [[nodiscard]] Walking walking(const Chain& chain, std::size_t k, std::size_t performer) const {
+    const Instant start = chain.stops[k].depart;
+    const Instant end = chain.stops[k + 1].arrive;
+    const auto& timing = chain.legs[k].timing;
+    if (timing.empty()) return {start, end};
+    const Leg::Timing& own = timing[slot_[k][performer]];
+    const double whole_s = to_seconds(end - start);
+    return {own.start > 0 ? start + seconds(own.start * whole_s) : start,
+            own.end < 1 ? start + seconds(own.end * whole_s) : end};
+  }
+
   void write_tracks(const Chain& chain) {
     planned_.plan.tracks.resize(show_.performers.size());
     for (std::size_t p = 0; p < show_.performers.size(); ++p) {
@@ -209,8 +226,11 @@ class ShowPlanner {
       if (chain.stops.front().arrive > kStart) track.push_back({kStart, cell_of(chain, 0, p)});
       for (std::size_t k = 0; k < chain.stops.size(); ++k) {
         const Stop& stop = chain.stops[k];
-        track.push_back({stop.arrive, cell_of(chain, k, p)});
-        if (stop.depart > stop.arrive) track.push_back({stop.depart, cell_of(chain, k, p)});
+        const CellIndex cell = cell_of(chain, k, p);
+        const Instant arrive = k > 0 ? walking(chain, k - 1, p).end : stop.arrive;
+        const Instant depart = k < chain.legs.size() ? walking(chain, k, p).start : stop.depart;
+        track.push_back({arrive, cell});
+        if (depart > arrive) track.push_back({depart, cell});
       }
     }
   }
@@ -310,11 +330,19 @@ class ShowPlanner {
           facts.longest_walker = PerformerIndex::of(p);
         }
       }
-      const NearPair nearest = nearest_pair(walks);
-      facts.clearance_m = nearest.approach.distance_m;
-      facts.closest_a = PerformerIndex(nearest.a);
-      facts.closest_b = PerformerIndex(nearest.b);
-      facts.closest_at = facts.start + seconds(nearest.approach.share * to_seconds(facts.end - facts.start));
+      if (chain.legs[k].timing.empty()) {
+        const NearPair nearest = nearest_pair(walks);
+        facts.clearance_m = nearest.approach.distance_m;
+        facts.closest_a = PerformerIndex(nearest.a);
+        facts.closest_b = PerformerIndex(nearest.b);
+        facts.closest_at = facts.start + seconds(nearest.approach.share * to_seconds(facts.end - facts.start));
+      } else {
+        const ClosestApproach nearest = closest_approach(plan, facts.start, facts.end);
+        facts.clearance_m = nearest.distance_m;
+        facts.closest_a = nearest.a;
+        facts.closest_b = nearest.b;
+        facts.closest_at = nearest.at;
+      }
       facts.tolerated_lag_s = tolerated_lag_s(plan, facts.start, facts.end);
     });
   }

@@ -16,6 +16,8 @@ namespace {
 constexpr double kRounding_m = 1e-9;
 /// On the way around blocked cells there is a stop whenever somebody may have walked so many pitches.
 constexpr double kViaPitches = 4.5;
+/// Longest step in which people wait before or after a walk: a count is halved until it is no longer than this.
+constexpr double kWait_s = 0.3;
 /// Cell by cell around blocked cells: room in each step for the rounding of instants, and steps walked at once.
 constexpr double kStepMargin = 1.001;
 constexpr std::size_t kStride = 4;
@@ -198,6 +200,25 @@ class ChainBuilder {
     return instants;
   }
 
+  /// Who waits, waits on the beat: half a count at 120 counts a minute.
+  [[nodiscard]] double wait_s(Instant at) const {
+    const TempoMap& tempo = task_.show->tempo;
+    double wait = 60 / tempo.bpm_at(tempo.count_at(at));
+    while (wait > kWait_s) wait /= 2;
+    return wait;
+  }
+
+  /// Named people after named people: nobody may take another's place.
+  [[nodiscard]] bool both_named(std::size_t k) const {
+    const auto named = [&](const Stop& stop) { return stop.station && stations_[*stop.station].pinned; };
+    return named(chain_.stops[k]) && named(chain_.stops[k - 1]);
+  }
+  static std::vector<std::uint32_t> numbers(std::size_t size) {
+    std::vector<std::uint32_t> out(size);
+    std::iota(out.begin(), out.end(), 0U);
+    return out;
+  }
+
   void walk_stretch(std::size_t first, std::size_t last) {
     const std::vector<PaceInstant> instants = instants_of(first, last);
     auto wanted = leave_early(ways_, instants, reserve_);
@@ -225,6 +246,11 @@ class ChainBuilder {
       task.snap.goal_m = reach_m[n];
       task.exact = stop.exact;
       task.clearance_m = task_.clearance_m;
+      task.walked_s = to_seconds(stop.arrive - chain_.stops[k - 1].depart);
+      task.lag_s = to_seconds(task_.show->stage.lag);
+      task.wait_s = wait_s(stop.arrive);
+      const std::vector<std::uint32_t> names = both_named(k) ? numbers(stop.own.size()) : std::vector<std::uint32_t>();
+      task.kind = names;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {
         for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];

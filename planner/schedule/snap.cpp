@@ -57,10 +57,14 @@ class Snapper {
  private:
   [[nodiscard]] bool holds(std::size_t slot) const { return !task_.hold.empty() && task_.hold[slot] != 0; }
 
+  [[nodiscard]] double longest_m(std::size_t slot) const {
+    return !task_.slow.empty() && task_.slow[slot] != 0 ? std::min(task_.slow_m, task_.longest_m) : task_.longest_m;
+  }
+
   [[nodiscard]] bool reachable(std::size_t slot, CellIndex cell) const {
     const Point from = grid_.centre(task_.now[slot]);
     const Point to = grid_.centre(cell);
-    return cell == task_.now[slot] || (distance(from, to) <= task_.longest_m && ways_.straight(from, to));
+    return cell == task_.now[slot] || (distance(from, to) <= longest_m(slot) && ways_.straight(from, to));
   }
 
   [[nodiscard]] bool on_time(std::size_t slot) const {
@@ -78,9 +82,9 @@ class Snapper {
 
   [[nodiscard]] Point aim(std::size_t slot) const {
     const Point from = grid_.centre(task_.now[slot]);
-    const Point there = ways_.toward(from, task_.wanted[slot].at, paced_m(task_.longest_m, pitch_)).at;
+    const Point there = ways_.toward(from, task_.wanted[slot].at, paced_m(longest_m(slot), pitch_)).at;
     if (beyond_goal_m(slot, there) <= 0) return there;
-    return ways_.toward(from, grid_.centre(task_.goal[slot]), paced_m(task_.longest_m, pitch_)).at;
+    return ways_.toward(from, grid_.centre(task_.goal[slot]), paced_m(longest_m(slot), pitch_)).at;
   }
 
   [[nodiscard]] double cost(std::size_t slot, Point aim_at, CellIndex cell) const {

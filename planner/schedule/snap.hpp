@@ -24,6 +24,8 @@ struct SnapTask {
   /// that they can; kNoGoal, or all empty: there is none.
   std::span<const CellIndex> goal = {};
   double goal_m = 0;
+  std::span<const char> slow = {};  ///< one flag a slot: walks no further than `slow_m`; empty: nobody has to
+  double slow_m = 0;
 };
 
 /// Where the slots are next: whoever can reach the own cell stands on it; everybody else goes toward what is wanted as

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace footlight::planner {
 namespace {
 
 /// Rounds in which only one of two people in conflict has to wait.
 constexpr int kPatience = 4;
+/// Rounds in which those who conflict when they are late are slowed down.
+constexpr int kLagPatience = 10;
 
 template <class T>
 std::vector<T> taken(std::span<const T> from, const std::vector<std::uint32_t>& order) {
@@ -38,7 +41,7 @@ class OrderedStep {
   [[nodiscard]] StageKey key(const StageKey& floor) const {
     StageHash hash("step");
     hash.add(floor).add(task_.exact).add(task_.clearance_m).add(task_.snap.longest_m);
-    hash.list(now_).list(own_).list(kind_);
+    hash.list(now_).list(own_).list(kind_).add(task_.walked_s).add(task_.lag_s).add(task_.wait_s);
     if (task_.exact) return hash.key();
     hash.add(task_.snap.onward_m).add(goal_.empty() ? 0.0 : task_.snap.goal_m).list(goal_);
     for (const std::vector<Wanted>* list : {&wanted_, &onward_}) {
@@ -58,7 +61,7 @@ class OrderedStep {
     Step step;
     if (task_.exact) {
       step.cells = own_;
-      step.leg = pair(step.cells);
+      step.leg = pair(step.cells, {}, {});
       return step;
     }
     SnapTask snap_task = task_.snap;
@@ -68,13 +71,26 @@ class OrderedStep {
     snap_task.onward = onward_;
     snap_task.goal = goal_;
     std::vector<char> hold(now_.size(), 0);
-    for (int round = 0;; ++round) {
+    std::vector<char> slow(now_.size(), 0);
+    snap_task.slow_m = slow_m();
+    std::optional<Step> best;
+    for (int round = 0, patience = kLagPatience; patience > 0; ++round) {
       snap_task.hold = hold;
+      snap_task.slow = slow;
       step.cells = snap(snap_task);
-      step.leg = pair(step.cells);
-      if (step.leg.conflicts.empty()) return step;
-      wait(step, round, hold);
+      step.leg = pair(step.cells, task_.snap.ways->standable(), hold);
+      if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
+      step.leg.to.clear();
+      if (!step.leg.conflicts.empty()) {
+        wait(step, round, hold);
+        continue;
+      }
+      if (step.leg.late_conflicts.empty()) return step;
+      --patience;
+      slow_down(step, patience >= kLagPatience - kPatience, slow, hold);
+      if (!best || step.leg.late_conflicts.size() < best->leg.late_conflicts.size()) best = std::move(step);
     }
+    return std::move(*best);
   }
 
   /// In the task's numbering of the slots.
@@ -84,15 +100,19 @@ class OrderedStep {
       out.cells[order_[n]] = ordered.cells[n];
       out.leg.target_of[order_[n]] = order_[ordered.leg.target_of[n]];
     }
-    for (auto& [a, b] : out.leg.conflicts) {
-      a = order_[a];
-      b = order_[b];
+    for (std::uint32_t n = 0; n < ordered.leg.timing.size(); ++n) out.leg.timing[order_[n]] = ordered.leg.timing[n];
+    for (auto* pairs : {&out.leg.conflicts, &out.leg.late_conflicts}) {
+      for (auto& [a, b] : *pairs) {
+        a = order_[a];
+        b = order_[b];
+      }
     }
     return out;
   }
 
  private:
-  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to) const {
+  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free,
+                         std::span<const char> hold) const {
     LegTask leg;
     leg.ways = task_.snap.ways;
     leg.from = now_;
@@ -100,7 +120,28 @@ class OrderedStep {
     leg.longest_m = task_.snap.longest_m;
     leg.clearance_m = task_.clearance_m;
     leg.kind = kind_;
+    leg.late_share = task_.walked_s > 0 ? std::min(1.0, task_.lag_s / task_.walked_s) : 0;
+    leg.stagger_share = task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
+    leg.free = free;
+    leg.fixed_target = hold;
     return settle(leg);
+  }
+
+  /// Somebody on a walk of this length comes by lateness no nearer to others than the bound allows.
+  [[nodiscard]] double slow_m() const {
+    const double spare_m = task_.snap.ways->grid().clearance_bound_m() - task_.clearance_m;
+    return task_.lag_s > 0 ? std::max(0.0, spare_m) * task_.walked_s / task_.lag_s : task_.snap.longest_m;
+  }
+
+  /// Of each pair the one with the shorter walk (later both) goes slowly, or waits when that was not enough.
+  void slow_down(const Step& step, bool one, std::vector<char>& slow, std::vector<char>& hold) const {
+    for (const auto& [a, b] : step.leg.late_conflicts) {
+      const bool a_first = walk_m(step, a) <= walk_m(step, b);
+      for (const std::uint32_t slot : {a_first ? a : b, a_first ? b : a}) {
+        (slow[slot] == 0 ? slow : hold)[slot] = 1;
+        if (one) break;
+      }
+    }
   }
 
   void wait(const Step& step, int round, std::vector<char>& hold) const {
@@ -133,14 +174,32 @@ class OrderedStep {
   std::vector<std::uint32_t> kind_;
 };
 
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::vector<std::uint32_t> flat(const Pairs& pairs) {
+  std::vector<std::uint32_t> out;
+  for (const auto& [a, b] : pairs) {
+    out.push_back(a);
+    out.push_back(b);
+  }
+  return out;
+}
+
+Pairs pairs_of(const std::vector<std::uint32_t>& flat) {
+  Pairs out;
+  for (std::size_t n = 0; n + 1 < flat.size(); n += 2) out.emplace_back(flat[n], flat[n + 1]);
+  return out;
+}
+
 std::string encoded(const Step& step) {
   StageWriter out;
-  std::vector<std::uint32_t> conflicts;
-  for (const auto& [a, b] : step.leg.conflicts) {
-    conflicts.push_back(a);
-    conflicts.push_back(b);
+  std::vector<double> timing;
+  for (const Leg::Timing& own : step.leg.timing) {
+    timing.push_back(own.start);
+    timing.push_back(own.end);
   }
-  out.list(step.cells).list(step.leg.target_of).list(conflicts);
+  out.list(step.cells).list(step.leg.target_of).list(flat(step.leg.conflicts)).list(flat(step.leg.late_conflicts));
+  out.list(timing);
   return out.add(step.leg.exchanges).add(step.leg.walkable).take();
 }
 
@@ -148,10 +207,10 @@ Step decoded(StageReader& reader) {
   Step step;
   step.cells = reader.list<CellIndex>();
   step.leg.target_of = reader.list<std::uint32_t>();
-  const auto conflicts = reader.list<std::uint32_t>();
-  for (std::size_t n = 0; n + 1 < conflicts.size(); n += 2) {
-    step.leg.conflicts.emplace_back(conflicts[n], conflicts[n + 1]);
-  }
+  step.leg.conflicts = pairs_of(reader.list<std::uint32_t>());
+  step.leg.late_conflicts = pairs_of(reader.list<std::uint32_t>());
+  const auto timing = reader.list<double>();
+  for (std::size_t n = 0; n + 1 < timing.size(); n += 2) step.leg.timing.push_back({timing[n], timing[n + 1]});
   step.leg.exchanges = reader.get<int>();
   step.leg.walkable = reader.get<bool>();
   return step;

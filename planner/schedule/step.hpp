@@ -11,10 +11,13 @@ namespace footlight::planner {
 
 /// Everybody from one instant to the next.
 struct StepTask {
-  SnapTask snap;       ///< without `hold`; a goal of kNoGoal binds nobody
+  SnapTask snap;       ///< without `hold` and `slow`; a goal of kNoGoal binds nobody
   bool exact = false;  ///< everybody goes to `snap.own`
   double clearance_m = 0.5;
   std::span<const std::uint32_t> kind = {};  ///< as LegTask::kind
+  double walked_s = 0;                       ///< time between the two instants
+  double lag_s = 0;                          ///< how late anybody may be
+  double wait_s = 0;                         ///< who waits, waits for multiples of this; 0: nobody does
 };
 
 struct Step {
@@ -23,7 +26,9 @@ struct Step {
 };
 
 /// Snaps and pairs; who conflicts waits, and whoever conflicts with those, until nobody does. If all waited nobody
-/// would, so it ends. The result does not depend on how the slots are numbered.
+/// would, so it ends. Who conflicts only when people are late walks more slowly: two people of whom one is slow enough
+/// cannot use up by lateness what walks keep by themselves; after a bounded number of rounds the best one is taken and
+/// what is left stands in `leg.late_conflicts`. The result does not depend on how the slots are numbered.
 [[nodiscard]] Step walk_step(const StepTask& task);
 
 /// The same as a stage. @param floor hash of the grid and what is blocked on it

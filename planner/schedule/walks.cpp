@@ -10,6 +10,7 @@
 #include "planner/assignment/assignment.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/repair/exchange.hpp"
+#include "planner/repair/tolerance.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -27,7 +28,8 @@ class Settler {
  public:
   explicit Settler(const LegTask& task) : task_(task), grid_(task.ways->grid()) {
     for (const CellIndex cell : task.from) sources_.push_back(grid_.centre(cell));
-    for (const CellIndex cell : task.to) targets_.push_back(grid_.centre(cell));
+    cells_.assign(task.to.begin(), task.to.end());
+    for (const CellIndex cell : cells_) targets_.push_back(grid_.centre(cell));
     FL_CHECK(sources_.size() == targets_.size() && (task.kind.empty() || task.kind.size() == sources_.size()));
     reach_m_ = std::max(task.clearance_m, grid_.clearance_bound_m());
   }
@@ -39,8 +41,12 @@ class Settler {
     match_walkable(leg.target_of);
     leg.walkable = walkable(leg.target_of);
     leg.exchanges = swap_conflicts(leg.target_of);
-    auto close = close_pairs(leg.target_of);
-    if (!close.empty()) resolve(leg, std::move(close));
+    loosen(leg);
+    if (!leg.conflicts.empty()) {
+      resolve(leg, close_pairs(leg.target_of));
+      loosen(leg);
+    }
+    if (!std::equal(cells_.begin(), cells_.end(), task_.to.begin())) leg.to = std::move(cells_);
     return leg;
   }
 
@@ -88,6 +94,29 @@ class Settler {
     }
   }
 
+  /// Small changes so that people may be late; they solve most conflicts of punctual people, too.
+  void loosen(Leg& leg) {
+    const MayWalk may = [&](Point a, Point b) { return may_walk(a, b); };
+    ToleranceTask task{&grid_, task_.from, task_.kind, task_.clearance_m, task_.late_share, &may, task_.longest_m};
+    task.stagger_share = task_.stagger_share;
+    task.free = task_.free;
+    task.fixed_target = task_.fixed_target;
+    const Tolerance found = keep_apart_when_late(task, cells_, leg.target_of);
+    leg.exchanges += found.exchanges;
+    for (std::size_t j = 0; j < targets_.size() && found.moved > 0; ++j) targets_[j] = grid_.centre(cells_[j]);
+    leg.timing.clear();
+    for (std::size_t i = 0; i < found.walks.size() && found.waits > 0; ++i) {
+      leg.timing.push_back({found.walks[i].start, found.walks[i].end});
+    }
+    leg.conflicts.clear();
+    leg.late_conflicts.clear();
+    const double least_m = task_.clearance_m - kRounding_m;
+    for (const auto& [a, b] : found.left) {
+      const bool punctual = least_squared_when_late_m2(found.walks[a], found.walks[b], 0) < least_m * least_m;
+      (punctual ? leg.conflicts : leg.late_conflicts).emplace_back(a, b);
+    }
+  }
+
   /// The exact pairing of some people with their own targets; nothing when there is none.
   [[nodiscard]] std::optional<Assignment> match_within(const std::vector<std::uint32_t>& people) const {
     if (task_.ways->open()) {
@@ -123,12 +152,12 @@ class Settler {
     for (const NearPair& pair : close) {
       for (const std::uint32_t i : {pair.a, pair.b}) {
         mark(task_.from[i]);
-        mark(task_.to[target_of[i]]);
+        mark(cells_[target_of[i]]);
       }
     }
     std::vector<std::uint32_t> people;
     for (std::uint32_t i = 0; i < sources_.size(); ++i) {
-      if (marked[task_.from[i].at()] != 0 || marked[task_.to[target_of[i]].at()] != 0) people.push_back(i);
+      if (marked[task_.from[i].at()] != 0 || marked[cells_[target_of[i]].at()] != 0) people.push_back(i);
     }
     return people;
   }
@@ -139,7 +168,7 @@ class Settler {
   void match_again(const std::vector<std::uint32_t>& people, const Penalties& penalties,
                    std::vector<std::uint32_t>& target_of) const {
     std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(grid_.size()), kNone);
-    for (std::uint32_t n = 0; n < people.size(); ++n) at_cell[task_.to[target_of[people[n]]].at()] = n;
+    for (std::uint32_t n = 0; n < people.size(); ++n) at_cell[cells_[target_of[people[n]]].at()] = n;
     std::vector<Arc> arcs;
     for (std::uint32_t n = 0; n < people.size(); ++n) {
       const std::uint32_t i = people[n];
@@ -193,7 +222,8 @@ class Settler {
   const LegTask& task_;
   const Grid& grid_;
   std::vector<Point> sources_;
-  std::vector<Point> targets_;
+  std::vector<CellIndex> cells_;  ///< the targets
+  std::vector<Point> targets_;    ///< their centres
   double reach_m_ = 0;
 };
 

@@ -21,6 +21,13 @@ struct LegTask {
   /// kind[i] is the kind of the person on from[i] and, since to[i] is meant for that person, of the target to[i]:
   /// people take targets of their own kind only. A kind of one's own is a name. Empty: everybody may take every target.
   std::span<const std::uint32_t> kind = {};
+  /// Of the time between the two instants, how much anybody may be late, independently of all others; in [0, 1].
+  double late_share = 0;
+  /// Of the same time: somebody may leave later or be there earlier by multiples of it; 0: nobody does.
+  double stagger_share = 0;
+  /// Where the drawing may give way: one flag a cell, targets may be moved there to keep people apart.
+  std::span<const char> free = {};
+  std::span<const char> fixed_target = {};  ///< one flag a target that must not be moved; empty: none
 };
 
 struct Leg {
@@ -28,13 +35,23 @@ struct Leg {
   int exchanges = 0;
   /// Pairs (positions in `from`) below the clearance that could not be solved; empty when the leg is clear.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> conflicts;
-  bool walkable = true;  ///< every walk is short enough and clear of blocked cells
+  /// Pairs that come too near only when they are late; empty when the leg tolerates the lag.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> late_conflicts;
+  /// When each of `from` walks, shares of the time between the instants; empty: everybody all the time.
+  struct Timing {
+    double start = 0;
+    double end = 1;
+  };
+  std::vector<Timing> timing;
+  std::vector<CellIndex> to;  ///< the targets, where some have been moved; else empty
+  bool walkable = true;       ///< every walk is short enough and clear of blocked cells
 };
 
 /// Hands out the targets so that nobody comes too close: exchange first; where a limit forbids the exchange the arcs
 /// that conflict are made dearer, and the people among targets near their own are matched again until no conflict is
-/// left. Of a pairing that is not walkable at the start the kinds with such walks get the exact pairing under the
-/// limits where there is one.
+/// left. What conflicts only when people are late is then solved by small changes (`keep_apart_when_late`). Of a
+/// pairing that is not walkable at the start the kinds with such walks get the exact pairing under the limits where
+/// there is one.
 [[nodiscard]] Leg settle(const LegTask& task);
 
 }  // namespace footlight::planner
