@@ -12,6 +12,8 @@ namespace {
 constexpr int kPatience = 4;
 /// Rounds in which those who conflict when they are late are slowed down.
 constexpr int kLagPatience = 10;
+/// The last of these, in which people may also wait before or after their walks.
+constexpr int kLastRounds = 3;
 
 template <class T>
 std::vector<T> taken(std::span<const T> from, const std::vector<std::uint32_t>& order) {
@@ -61,7 +63,7 @@ class OrderedStep {
     Step step;
     if (task_.exact) {
       step.cells = own_;
-      step.leg = pair(step.cells, {}, {});
+      step.leg = pair(step.cells, {}, {}, true);
       return step;
     }
     SnapTask snap_task = task_.snap;
@@ -78,7 +80,8 @@ class OrderedStep {
       snap_task.hold = hold;
       snap_task.slow = slow;
       step.cells = snap(snap_task);
-      step.leg = pair(step.cells, task_.snap.ways->standable(), hold);
+      // The drawing gives way before anybody waits: a wait is one more switch of all markers.
+      step.leg = pair(step.cells, task_.snap.ways->standable(), hold, patience <= kLastRounds);
       if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
       step.leg.to.clear();
       if (!step.leg.conflicts.empty()) {
@@ -111,8 +114,8 @@ class OrderedStep {
   }
 
  private:
-  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free,
-                         std::span<const char> hold) const {
+  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free, std::span<const char> hold,
+                         bool waits) const {
     LegTask leg;
     leg.ways = task_.snap.ways;
     leg.from = now_;
@@ -121,7 +124,7 @@ class OrderedStep {
     leg.clearance_m = task_.clearance_m;
     leg.kind = kind_;
     leg.late_share = task_.walked_s > 0 ? std::min(1.0, task_.lag_s / task_.walked_s) : 0;
-    leg.stagger_share = task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
+    leg.stagger_share = waits && task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
     leg.free = free;
     leg.fixed_target = hold;
     return settle(leg);
