@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "planner/assignment/assignment.hpp"
 #include "planner/formation/cell_shares.hpp"
 #include "planner/formation/formation.hpp"
 #include "planner/formation/placement.hpp"
 #include "planner/formation/sampling.hpp"
 #include "planner/joint/joint_plan.hpp"
 #include "planner/parallel.hpp"
-#include "planner/schedule/chain.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -22,6 +22,9 @@ namespace {
 constexpr double kShortestInterval = 2.5;
 /// The same where drawing and walks are planned together: as often as the walk can follow.
 constexpr double kJointInterval = 2.0;
+/// Share of the longest walk that is counted on where blocked cells may be in the way.
+constexpr double kAroundBlocked = 0.7;
+constexpr double kRounding_m = 1e-9;
 
 const PictureOptions& picture_options(const Section& section) {
   if (const auto* video = std::get_if<VideoSource>(&section.from)) return video->picture;
@@ -37,12 +40,14 @@ std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share);
 
 class PictureSection {
  public:
-  PictureSection(const Show& show, SectionIndex index, const Film& film, const Ways& ways, const Progress& progress)
+  PictureSection(const Show& show, SectionIndex index, const Film& film, const Ways& ways, const Station* before,
+                 const Progress& progress)
       : show_(show),
         section_(show.sections[index.at()]),
         index_(index),
         film_(film),
         ways_(ways),
+        before_(before),
         progress_(progress),
         grid_(show.stage.grid),
         people_(static_cast<int>(show.performers.size())) {
@@ -63,39 +68,76 @@ class PictureSection {
     plan.section.notes = notes();
     describe(plan.section);
     fill_stations(plan);
-    if (section_.planner.model == PlannerModel::joint && plan.stations.size() > 1) draw_and_walk(plan);
+    if (jointly_) draw_and_walk(plan);
+    if (!why_not_.empty()) plan.section.notes.push_back("planned as `model: hierarchical`: " + why_not_);
     if (progress_.stopped()) return Error{ErrorKind::interrupted, "stopped while drawing formations"};
     return plan;
   }
 
  private:
-  /// Puts the cells of the joint plan in place of the drawings; what is too large for it stays as it is.
-  void draw_and_walk(SectionPlan& plan) const {
-    const JointTask task{&film_,
-                         &ways_,
-                         &usable_,
-                         reserve_,
-                         placement_.map,
-                         fps_,
-                         keys_.front().time,
-                         keys_,
-                         plan.stations.front().cells,
-                         section_speed(show_, section_),
-                         reserve_.empty() && !given() ? std::vector<std::vector<CellIndex>>() : guide(plan.stations)};
-    if (progress_.stopped()) return;
+  /// Puts the cells of the joint plan in place of the drawings. People begin where it is best for the whole film,
+  /// unless the formation before cannot be left for there in time.
+  void draw_and_walk(SectionPlan& plan) {
+    JointTask task{&film_,
+                   &ways_,
+                   &usable_,
+                   reserve_,
+                   placement_.map,
+                   fps_,
+                   keys_.front().time,
+                   keys_,
+                   static_cast<std::size_t>(people_),
+                   {},
+                   section_speed(show_, section_),
+                   {}};
+    if (given()) {
+      task.given.resize(keys_.size());
+      for (std::size_t n = 0; n < keys_.size(); ++n) {
+        if (keys_[n].given) task.given[n] = plan.stations[n].cells;
+      }
+    }
+    const Duration gap = before_ == nullptr ? Duration::max() : keys_.front().time - before_->depart;
+    if (gap <= Duration::zero()) task.first = before_->cells;
     auto joint = plan_jointly(task, progress_);
-    if (!joint || !keeps_keys(plan.stations, joint->at)) return;
-    for_each_index(plan.stations.size() - 1, "formations", progress_, [&](std::size_t n) {
-      Station& station = plan.stations[n + 1];
-      station.cells = std::move(joint->at[n + 1]);
-      station.follows = true;
-      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n + 1].frame)];
+    if (joint && gap > Duration::zero() && before_ != nullptr && !can_walk(before_->cells, joint->at[0], gap)) {
+      task.first = plan.stations.front().cells;
+      joint = plan_jointly(task, progress_);
+    }
+    if (!joint) return;
+    if (!keeps_keys(plan.stations, joint->at)) {
+      why_not_ = "the formations of its keys cannot all be reached in time";
+      return;
+    }
+    take(std::move(*joint), plan);
+  }
+
+  [[nodiscard]] bool can_walk(const std::vector<CellIndex>& from, const std::vector<CellIndex>& to,
+                              Duration time) const {
+    std::vector<Point> sources;
+    std::vector<Point> targets;
+    for (const CellIndex cell : from) sources.push_back(grid_.centre(cell));
+    for (const CellIndex cell : to) targets.push_back(grid_.centre(cell));
+    const double share = ways_.open() ? 1 : kAroundBlocked;
+    const double longest_m = share * section_speed(show_, section_) * to_seconds(time) - kRounding_m;
+    return longest_m > 0 && assign(sources, targets, WalkCost::squared, longest_m).has_value();
+  }
+
+  void take(JointPlan joint, SectionPlan& plan) const {
+    for_each_index(plan.stations.size(), "formations", progress_, [&](std::size_t n) {
+      Station& station = plan.stations[n];
+      station.cells = std::move(joint.at[n]);
+      station.follows = n > 0;
+      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n].frame)];
       const auto shares = cell_shares(picture, grid_, placement_.map);
       station.in_picture =
           static_cast<int>(std::count_if(station.cells.begin(), station.cells.end(), [&](CellIndex cell) {
             return usable_[cell.at()] != 0 && shares[cell.at()] > 0;
           }));
     });
+    plan.section.notes.push_back(
+        fmt::format("drawing and walks are planned together: nobody who keeps the speed limit could save more than "
+                    "{:.2g} intervals outside of the picture a person",
+                    joint.gap / people_));
   }
 
   /// Whether the cells of each of the director's key formations are taken.
@@ -110,17 +152,6 @@ class PictureSection {
       if (wanted != taken) return false;
     }
     return true;
-  }
-
-  /// The drawings, walked one after the other.
-  [[nodiscard]] std::vector<std::vector<CellIndex>> guide(const std::vector<Station>& stations) const {
-    std::vector<std::vector<CellIndex>> cells;
-    auto chain = walk_through({&show_, &ways_, &stations, show_.stage.clearance_m}, progress_);
-    if (!chain) return cells;
-    for (const Stop& stop : chain->stops) {
-      if (stop.station) cells.push_back(stop.cells);
-    }
-    return cells;
   }
 
   [[nodiscard]] bool given() const {
@@ -164,9 +195,13 @@ class PictureSection {
     if (auto error = find_given(time, given)) return error;
     const double walk_s = grid_.pitch_m() / section_speed(show_, section_);
     if (section_.planner.model == PlannerModel::joint) {
-      keys_ = with_given(walking_instants(film_, time, section_.sampling.snap_to_count, kJointInterval * walk_s), given,
-                         kJointInterval * walk_s);
-      return std::nullopt;
+      auto instants = walking_instants(film_, time, section_.sampling.snap_to_count, kJointInterval * walk_s);
+      jointly_ = can_plan_jointly(grid_, instants.size());
+      if (jointly_) {
+        keys_ = with_given(std::move(instants), given, kJointInterval * walk_s);
+        return std::nullopt;
+      }
+      why_not_ = "more than 5 million cells times instants";
     }
     Sampling sampling = section_.sampling;
     if (section_.planner.model == PlannerModel::flat && !given.empty()) {
@@ -324,6 +359,7 @@ class PictureSection {
   SectionIndex index_;
   const Film& film_;
   const Ways& ways_;
+  const Station* before_;
   const Progress& progress_;
   const Grid& grid_;
   int people_;
@@ -334,13 +370,15 @@ class PictureSection {
   Placement placement_;
   std::vector<Drawing> drawings_;
   std::vector<char> kept_;
+  bool jointly_ = false;
+  std::string why_not_;  // planned jointly, though the section asks for it
 };
 
 }  // namespace
 
 Result<SectionPlan> plan_pictures(const Show& show, SectionIndex section, const Film& film, const Ways& ways,
-                                  const Progress& progress) {
-  return PictureSection(show, section, film, ways, progress).run();
+                                  const Station* before, const Progress& progress) {
+  return PictureSection(show, section, film, ways, before, progress).run();
 }
 
 }  // namespace footlight::planner

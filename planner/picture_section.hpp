@@ -9,6 +9,6 @@ namespace footlight::planner {
 /// The formations of a section that comes from a video or an image.
 /// @param film with at least one frame  @return as `plan_section`
 [[nodiscard]] Result<SectionPlan> plan_pictures(const Show& show, SectionIndex section, const Film& film,
-                                                const Ways& ways, const Progress& progress);
+                                                const Ways& ways, const Station* before, const Progress& progress);
 
 }  // namespace footlight::planner

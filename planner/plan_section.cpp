@@ -63,14 +63,14 @@ std::string message_at(const Show& show, const Position& position, std::string k
 }
 
 Result<SectionPlan> plan_section(const Show& show, SectionIndex index, const std::optional<Film>& film,
-                                 const Ways& ways, const Progress& progress) {
+                                 const Ways& ways, const Station* before, const Progress& progress) {
   const Section& section = show.sections[index.at()];
   const auto* cells = std::get_if<CellsSource>(&section.from);
   if (cells == nullptr && (!film || film->frames.empty())) {
     return internal_error("the frames of section '" + section.name + "' are missing");
   }
-  auto plan =
-      cells != nullptr ? cells_section(show, index, *cells) : plan_pictures(show, index, film.value(), ways, progress);
+  auto plan = cells != nullptr ? cells_section(show, index, *cells)
+                               : plan_pictures(show, index, film.value(), ways, before, progress);
   if (!plan) return plan;
   plan->section.name = section.name;
   plan->section.start = show.tempo.at(section.start_count);

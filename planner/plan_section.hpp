@@ -48,9 +48,10 @@ struct SectionPlan {
 
 /// Turns a section's source into formations of exactly as many cells as there are performers.
 /// @param film of a video or an image, else absent
+/// @param before the last formation of the section before, if any
 /// @return ErrorKind::input, positioned, when the floor, or the largest picture with the reserve, cannot hold
 /// everybody; interrupted when told to stop. Pure.
 [[nodiscard]] Result<SectionPlan> plan_section(const Show& show, SectionIndex section, const std::optional<Film>& film,
-                                               const Ways& ways, const Progress& progress);
+                                               const Ways& ways, const Station* before, const Progress& progress);
 
 }  // namespace footlight::planner

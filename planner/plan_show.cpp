@@ -92,7 +92,8 @@ class ShowPlanner {
  private:
   std::optional<Error> collect_stations(const Ways& ways) {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      auto section = plan_section(limits_, SectionIndex::of(s), films_[s], ways, progress_);
+      auto section = plan_section(limits_, SectionIndex::of(s), films_[s], ways,
+                                  stations_.empty() ? nullptr : &stations_.back(), progress_);
       if (!section) return section.error();
       if (auto error = apply_overrides(show_, SectionIndex::of(s), ways, *section)) return error;
       for (Station& station : section->stations) {

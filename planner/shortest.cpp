@@ -33,7 +33,8 @@ std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain
                                                    const Plan& plan) {
   const Section& asked = show.sections[section.at()];
   // Planned together with its walks a drawing asks for nothing that takes longer than there is.
-  if (asked.planner.model == PlannerModel::joint) return std::nullopt;
+  const auto& film = plan.sections[section.at()].film;
+  if (asked.planner.model == PlannerModel::joint && film && film->show_fps > 0) return std::nullopt;
   const Grid& grid = show.stage.grid;
   const double speed = section_speed(show, asked);
   Tightest tightest;

@@ -2,12 +2,13 @@
 #include "planner/joint/joint_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "planner/formation/best_single.hpp"
-#include "planner/formation/summed_area.hpp"
-#include "planner/joint/picture_worth.hpp"
+#include "planner/formation/cell_shares.hpp"
+#include "planner/joint/frame_weight.hpp"
 #include "planner/joint/time_flow.hpp"
 #include "planner/parallel.hpp"
 
@@ -18,28 +19,31 @@ constexpr double kRounding_m = 1e-9;
 /// Nobody goes further than this in one interval, whatever the limit is.
 constexpr double kFarthestPitches = 6;
 /// Frames of an interval that are looked at.
-constexpr double kFramesPerInterval = 5;
-/// What walking one pitch in an interval costs, squared for more: about a fifth of being in the picture meanwhile.
-constexpr double kWalkCost = 0.2;
+constexpr double kFramesPerInterval = 4;
+/// What walking one pitch in an interval costs, squared for more, where being in the picture meanwhile is worth one.
+constexpr double kWalkCost = 0.1;
 /// Whole costs for what one person in the picture is worth in one interval.
 constexpr double kScale = 1000;
-/// What it is worth to be where the guide has somebody, in intervals.
-constexpr double kGuideWorth = 100;
-/// The same at a key formation of the director's: more than everything else in a few intervals.
-constexpr double kKeyWorth = 900;
-/// Intervals that are looked ahead.
-constexpr std::size_t kHorizon = 12;
-/// What a place at the end of them is worth, in intervals.
-constexpr double kEndWorth = 2;
-/// More walks than this (all intervals together) are not weighed.
-constexpr std::size_t kMostWalks = 60'000'000;
+/// What being on a cell of a formation that the director gave is worth.
+constexpr double kKeyWorth = 200;
+/// Share of all people who are thought to be on their way at first.
+constexpr double kOnTheirWay = 0.5;
+/// Rounds, each with the weights of the walks before; how exact the first ends, step by step, and the others are.
+constexpr int kRounds = 3;
+constexpr std::array kEpsilons{1000, 200, 50};
+/// More cells times instants than this are not planned: 40 bytes each.
+constexpr std::size_t kMostNodes = 5'000'000;
+/// Walks to and from the reserve are kinds of their own.
+enum Border : std::uint8_t { kWithin, kOut, kIn, kBorders };
 
 /// One frame that is looked at.
 struct Look {
   std::size_t frame = 0;
   double share = 0;   // of the interval
   double stands = 1;  // for so many frames
+  double area = 0;    // of the picture, cells
   FrameWeight weight;
+  std::vector<float> rho;  // picture in each cell, 0 in the reserve
 };
 
 class JointPlanner {
@@ -49,7 +53,7 @@ class JointPlanner {
         progress_(progress),
         grid_(task.ways->grid()),
         pitch_(grid_.pitch_m()),
-        people_(static_cast<double>(task.first.size())),
+        people_(static_cast<double>(task.people)),
         waits_(static_cast<std::size_t>(grid_.size()), 0),
         looks_(task.instants.size() - 1) {
     for (const CellIndex cell : task.reserve) waits_[cell.at()] = 1;
@@ -57,10 +61,9 @@ class JointPlanner {
 
   std::optional<JointPlan> run() {
     choose_looks();
-    if (!find_reach()) return std::nullopt;
-    if (!weigh_best()) return std::nullopt;
-    if (!weigh_walks()) return std::nullopt;
-    return walk_on();
+    find_reach();
+    if (!look()) return std::nullopt;
+    return improve();
   }
 
  private:
@@ -80,136 +83,164 @@ class JointPlanner {
       look.frame = f;
       look.share = std::clamp(to_seconds(now - task_.instants[k].time) / interval_s(k), 0.0, 1.0);
       look.stands = static_cast<double>(std::min(step, frames - f));
-      looks_[k].push_back(look);
+      looks_[k].push_back(std::move(look));
     }
-    worth_ = people_ / per_interval;
+    worth_ = kScale * people_ / per_interval;
   }
 
-  bool find_reach() {
-    std::size_t walks = 0;
+  void find_reach() {
     for (std::size_t k = 0; k < looks_.size(); ++k) {
       const double reach_m = std::min(task_.speed_mps * interval_s(k) - kRounding_m, kFarthestPitches * pitch_);
       const auto [known, is_new] = reach_.try_emplace(std::llround(reach_m * 1e6));
       if (is_new) known->second = reach_of(std::max(reach_m, 0.0));
-      intervals_.push_back({&known->second, {}});
-      walks += known->second.to.size();
+      flow_.intervals.push_back({&known->second, {}});
     }
-    return walks <= kMostWalks;
   }
 
-  [[nodiscard]] Reach reach_of(double reach_m) const {
+  [[nodiscard]] Reach reach_of(double reach_m) {
     Reach reach;
     reach.first.push_back(0);
     for (std::size_t i = 0; i < waits_.size(); ++i) {
       const CellIndex from = CellIndex::of(i);
       if (task_.ways->can_stand(from)) {
         for (const CellIndex to : grid_.within(grid_.centre(from), reach_m)) {
-          if (!task_.ways->can_stand(to) || distance(grid_.centre(from), grid_.centre(to)) > reach_m) continue;
-          if (task_.ways->straight(grid_.centre(from), grid_.centre(to))) reach.to.push_back(to.value());
+          const double length_m = distance(grid_.centre(from), grid_.centre(to));
+          if (!task_.ways->can_stand(to) || length_m > reach_m) continue;
+          if (!task_.ways->straight(grid_.centre(from), grid_.centre(to))) continue;
+          reach.to.push_back(to.value());
+          const Border border = waits_[i] == waits_[to.at()] ? kWithin : waits_[i] != 0 ? kOut : kIn;
+          reach.kind.push_back(kind_of(length_m, border));
         }
       }
       reach.first.push_back(static_cast<std::uint32_t>(reach.to.size()));
     }
-    reach.find_back();
+    for (std::size_t kind = 0; kind < reach.mirror.size(); ++kind) {
+      constexpr std::array<std::uint8_t, kBorders> kMirror{kWithin, kIn, kOut};
+      reach.mirror[kind] = static_cast<std::uint8_t>(kind - kind % kBorders + kMirror[kind % kBorders]);
+    }
     return reach;
   }
 
-  /// First weights: as if every frame were drawn by people who need not walk.
-  bool weigh_best() {
+  /// Lengths are told apart to a thousandth of a pitch.
+  [[nodiscard]] std::uint8_t kind_of(double length_m, Border border) {
+    const long long key = std::llround(1000 * length_m / pitch_);
+    const auto [known, is_new] = lengths_.try_emplace(key, lengths_.size());
+    FL_CHECK(kBorders * known->second + border < 256);
+    return static_cast<std::uint8_t>(kBorders * known->second + border);
+  }
+
+  /// Looks at the frames. The first weights are those of people who need not walk, but for frames with few people in
+  /// the picture: half of all of them are thought to be on their way.
+  bool look() {
     const double cell_px = grid_.cell_area_m2() * std::abs(task_.map[0] * task_.map[4] - task_.map[1] * task_.map[3]);
     const int most = static_cast<int>(people_);
     const int least = std::max(0, most - static_cast<int>(task_.reserve.size()));
     return for_each_index(looks_.size(), "joint", progress_, [&](std::size_t k) {
       for (Look& look : looks_[k]) {
-        const SummedArea picture(task_.film->frames[look.frame]);
+        const Mask& picture = task_.film->frames[look.frame];
         const auto shares = cell_shares(picture, grid_, task_.map);
-        const SingleBest best =
-            best_single({&shares, task_.usable, static_cast<double>(picture.total()) / cell_px, least, most});
-        set_weight(look, best.people, best.covered, best.area);
+        look.area = static_cast<double>(picture_area(picture)) / cell_px;
+        const SingleBest best = best_single({&shares, task_.usable, look.area, least, most});
+        set_weight(look, std::max<double>(best.people, kOnTheirWay * people_), best.covered);
+        look.rho.assign(shares.begin(), shares.end());
+        for (const CellIndex cell : task_.reserve) look.rho[cell.at()] = 0;
       }
     });
   }
 
-  void set_weight(Look& look, double people, double covered, double area) const {
-    // Near nothing the figures are steep; a few people more or less must not decide about everything.
-    const double n = std::max(people, 0.05 * people_);
-    look.weight = frame_weight(n, std::clamp(covered, 0.5 * n, n), std::max(area, 0.5 * n));
+  /// Near nothing the figures are steep; a few people more or less must not decide about everything.
+  void set_weight(Look& look, double people, double covered) const {
+    const double least = 0.02 * people_;
+    const double n = std::max(people, least);
+    look.weight = frame_weight(n, std::clamp(covered, 0.0, n), std::max(look.area, least));
   }
 
-  /// Looks kHorizon intervals ahead, walks half of them, looks again from there.
-  std::optional<JointPlan> walk_on() {
-    const std::size_t all = intervals_.size();
-    JointPlan plan{{task_.first}};
-    for (std::size_t k = 0; k < all;) {
-      FlowTask flow;
-      std::size_t end = k + 1;
-      while (end < std::min(all, k + kHorizon) && !task_.instants[end].given) ++end;
-      // At the director's key formations everybody is where the guide has somebody; nobody looks beyond them.
-      const bool to_key = task_.instants[end].given;
-      const std::size_t go = end == all || to_key ? end : k + kHorizon / 2;
-      flow.cells = waits_.size();
-      flow.start = plan.at.back();
-      for (std::size_t n = k; n < end; ++n)
-        flow.intervals.push_back({intervals_[n].reach, std::move(intervals_[n].cost)});
-      flow.end_cost = weigh_end(end);
-      auto found = cheapest_flow(flow, {{}, progress_.stop});
-      if (!found) return std::nullopt;
-      for (std::size_t n = k; n < end; ++n) intervals_[n].cost = std::move(flow.intervals[n - k].cost);
-      for (std::size_t n = k; n < go; ++n) plan.at.push_back(std::move(found->at[n - k + 1]));
-      k = go;
-      progress_.tell("joint", static_cast<double>(k) / static_cast<double>(all));
+  std::optional<JointPlan> improve() {
+    flow_.cells = waits_.size();
+    flow_.people = task_.people;
+    flow_.start = task_.first;
+    TimeFlowSolver solver(flow_);
+    std::optional<JointPlan> best;
+    double least = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      weigh();
+      for (const int epsilon : kEpsilons) {
+        if (round > 0 && epsilon != kEpsilons.back()) continue;
+        if (!solver.refine(epsilon, {{}, progress_.stop})) return std::nullopt;
+      }
+      TimeFlow found = solver.result();
+      const double loss = judge(found);
+      if (!best || loss < least) {
+        least = loss;
+        best = JointPlan{std::move(found.at), static_cast<double>(found.cost - found.bound) / kScale};
+      }
+      progress_.tell("joint", (round + 1.0) / kRounds);
     }
-    return plan;
+    return best;
   }
 
-  bool weigh_walks() {
-    const bool done = for_each_index(looks_.size(), "joint", progress_, [&](std::size_t k) {
-      std::vector<PictureField> fields;
-      for (const Look& look : looks_[k]) fields.emplace_back(task_.film->frames[look.frame], grid_, task_.map);
-      FlowInterval& interval = intervals_[k];
-      interval.cost.resize(interval.reach->to.size());
-      for (std::uint32_t c = 0; c < waits_.size(); ++c) {
-        const Point from = grid_.centre(CellIndex(c));
-        for (std::uint32_t a = interval.reach->first[c]; a < interval.reach->first[c + 1]; ++a) {
-          const CellIndex cell(interval.reach->to[a]);
-          const Point to = grid_.centre(cell);
-          double gain = 0;
-          if (waits_[c] == 0 || waits_[cell.at()] == 0) {
-            for (std::size_t n = 0; n < fields.size(); ++n) {
-              const Look& look = looks_[k][n];
-              const Point at = from + look.share * (to - from);
-              gain += look.stands * (look.weight.alpha * fields[n].at(at.x, at.y) - look.weight.beta);
-            }
-          }
-          interval.cost[a] = whole(kWalkCost * squared_length(to - from) / (pitch_ * pitch_) - worth_ * gain);
+  /// What it costs to be on each cell at each instant, from the frames around it: a frame between two instants sees
+  /// everybody partly where she was and partly where she will be.
+  void weigh() {
+    const std::size_t cells = waits_.size();
+    flow_.stand.assign(cells * (looks_.size() + 1), 0);
+    for_each_index(looks_.size() + 1, "joint", {{}, progress_.stop}, [&](std::size_t k) {
+      std::vector<double> gain(cells, 0.0);
+      const auto add = [&](const Look& look, double share) {
+        const double alpha = worth_ * share * look.stands * look.weight.alpha;
+        const double beta = worth_ * share * look.stands * look.weight.beta;
+        for (std::size_t c = 0; c < cells; ++c) gain[c] += waits_[c] != 0 ? 0 : alpha * look.rho[c] - beta;
+      };
+      if (k < looks_.size()) {
+        double out = 0;
+        double in = 0;
+        for (const Look& look : looks_[k]) {
+          add(look, 1 - look.share);
+          out += worth_ * (1 - look.share) * look.stands * look.weight.beta;
+          in += worth_ * look.share * look.stands * look.weight.beta;
+        }
+        for (const auto& [length, index] : lengths_) {
+          const double walk = kScale * kWalkCost * static_cast<double>(length * length) / 1e6;
+          flow_.intervals[k].cost[kBorders * index + kWithin] = whole(walk);
+          flow_.intervals[k].cost[kBorders * index + kOut] = whole(walk + out);
+          flow_.intervals[k].cost[kBorders * index + kIn] = whole(walk + in);
         }
       }
+      if (k > 0) {
+        for (const Look& look : looks_[k - 1]) add(look, look.share);
+      }
+      if (!task_.given.empty()) {
+        for (const CellIndex cell : task_.given[k]) gain[cell.at()] += kScale * kKeyWorth;
+      }
+      for (std::size_t c = 0; c < cells; ++c) flow_.stand[k * cells + c] = whole(-gain[c]);
     });
-    return done;
   }
 
   [[nodiscard]] static std::int32_t whole(double cost) {
-    return static_cast<std::int32_t>(std::clamp(std::round(kScale * cost), -1e6, 1e6));
+    return static_cast<std::int32_t>(std::clamp(std::round(cost), -1e6, 1e6));
   }
 
-  /// Where people end is worth kEndWorth intervals.
-  [[nodiscard]] std::vector<std::int32_t> weigh_end(std::size_t instant) const {
-    const std::vector<Look>* looks = &looks_[instant - 1];
-    for (std::size_t k = instant - 1; looks->empty(); --k) looks = &looks_[k];
-    const Look& last = looks->back();
-    const auto frame = static_cast<std::size_t>(task_.instants[instant].frame);
-    const PictureField field(task_.film->frames[frame], grid_, task_.map);
-    std::vector<std::int32_t> cost(waits_.size());
-    for (std::size_t c = 0; c < waits_.size(); ++c) {
-      const Point at = grid_.centre(CellIndex::of(c));
-      const double gain = waits_[c] != 0 ? 0 : last.weight.alpha * field.at(at.x, at.y) - last.weight.beta;
-      cost[c] = whole(-kEndWorth * people_ * gain);
+  /// What the drawings lose by these walks, theta_dev + kIouWeight theta_iou, and the weights at that.
+  double judge(const TimeFlow& flow) {
+    double loss = 0;
+    for (std::size_t k = 0; k < looks_.size(); ++k) {
+      for (Look& look : looks_[k]) {
+        double people = 0;
+        double covered = 0;
+        for (std::size_t i = 0; i < task_.people; ++i) {
+          const std::size_t from = flow.at[k][i].at();
+          const std::size_t to = flow.at[k + 1][i].at();
+          if (waits_[from] != 0 && waits_[to] != 0) continue;
+          people += 1;
+          covered += (1 - look.share) * look.rho[from] + look.share * look.rho[to];
+        }
+        const double either = look.area + people - covered;
+        if (people > 0) loss += look.stands * (1 - covered / people);
+        if (either > 0) loss += look.stands * kIouWeight * (1 - covered / either);
+        set_weight(look, people, covered);
+      }
     }
-    if (!task_.guide.empty()) {
-      const double worth = task_.instants[instant].given ? kKeyWorth : kGuideWorth;
-      for (const CellIndex cell : task_.guide[instant]) cost[cell.at()] -= whole(worth);
-    }
-    return cost;
+    return loss;
   }
 
   const JointTask& task_;
@@ -220,7 +251,8 @@ class JointPlanner {
   CellFlags waits_;
   std::vector<std::vector<Look>> looks_;
   std::map<long long, Reach> reach_;
-  std::vector<FlowInterval> intervals_;
+  std::map<long long, std::size_t> lengths_;  // thousandths of a pitch, and their number
+  FlowTask flow_;
   double worth_ = 1;
 };
 
@@ -251,6 +283,10 @@ std::vector<KeyFrame> walking_instants(const Film& film, const FilmTime& time, b
   }
   keys.push_back(key(end_count, end));
   return keys;
+}
+
+bool can_plan_jointly(const Grid& grid, std::size_t instants) {
+  return static_cast<std::size_t>(grid.size()) * instants <= kMostNodes;
 }
 
 std::optional<JointPlan> plan_jointly(const JointTask& task, const Progress& progress) {

@@ -27,23 +27,27 @@ struct JointTask {
   double fps = 0;                  ///< frames per second of show
   Instant start;                   ///< of frame 0
   std::vector<KeyFrame> instants;  ///< ascending, at least two
-  std::vector<CellIndex> first;    ///< where people stand at the first instant; distinct
+  std::size_t people = 0;
+  std::vector<CellIndex> first;  ///< where people stand at the first instant; empty: where it is best
   double speed_mps = 0;
-  /// Where people stand at each instant in a plan that can be walked, or empty. With a reserve it says who sets out
-  /// when: further ahead than anybody looks here.
-  std::vector<std::vector<CellIndex>> guide;
+  /// Empty, or for each instant the cells of the formation that the director gave; elsewhere it is worth nothing.
+  std::vector<std::vector<CellIndex>> given;
 };
 
 /// Cells and walks of a film section at once.
 struct JointPlan {
   std::vector<std::vector<CellIndex>> at;  ///< for each instant and person; every walk is within speed and way
+  /// The walks cost at most so much more than any others under the same limits would, at the weights of the frames
+  /// found; 1: one person out of the picture for one interval.
+  double gap = 0;
 };
 
-/// Walks that draw the film: everybody's way is one unit of flow through cells and instants, and a walk costs what the
-/// frames that are shown meanwhile lose or gain by it, and its squared length. Each stretch of a few intervals is
-/// solved exactly (docs/algorithms/joint.md).
-/// @return nothing when stopped, or when there are more than 60 million walks to weigh. Byte-equal for any number of
-/// threads.
+/// Whether the film is small enough: 5 million cells x instants.
+[[nodiscard]] bool can_plan_jointly(const Grid& grid, std::size_t instants);
+
+/// Walks that draw the film: everybody's way is one unit of flow through cells and instants; being on a cell costs what
+/// the frames around the instant lose by it, walking its squared length (docs/algorithms/joint.md).
+/// @return nothing when stopped. Byte-equal for any number of threads.
 [[nodiscard]] std::optional<JointPlan> plan_jointly(const JointTask& task, const Progress& progress);
 
 }  // namespace footlight::planner

@@ -3,272 +3,326 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
-#include <utility>
 
 #include "core/check.hpp"
 
 namespace footlight::planner {
 namespace {
 
-constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max() / 2;
-constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-
-/// Searches look at so many states for each node before the potentials are made exact again.
-constexpr std::size_t kPatience = 2;
-
-/// Every node (a cell at an instant) has a way in and a way out, 2 n and 2 n + 1, and one place between them.
-class FlowSearch {
- public:
-  explicit FlowSearch(const FlowTask& task)
-      : task_(task),
-        cells_(static_cast<std::uint32_t>(task.cells)),
-        last_(static_cast<std::uint32_t>(task.intervals.size())),
-        potential_(2 * nodes(), 0),
-        distance_(2 * nodes(), kFar),
-        parent_(2 * nodes(), kNobody),
-        before_(nodes(), kNobody),
-        after_(nodes(), kNobody),
-        cost_in_(nodes(), 0) {
-    look_back();
-  }
-
-  std::optional<TimeFlow> run(const Progress& progress) {
-    for (std::size_t i = 0; i < task_.start.size(); ++i) {
-      if (i % 64 == 0) {
-        if (progress.stopped()) return std::nullopt;
-        progress.tell("joint", static_cast<double>(i) / static_cast<double>(task_.start.size()));
-      }
-      if (looked_at_ > kPatience * nodes()) look_back_again();
-      route(task_.start[i].value());
-    }
-    return result();
-  }
-
- private:
-  [[nodiscard]] std::size_t nodes() const { return static_cast<std::size_t>(cells_) * (last_ + 1); }
-  [[nodiscard]] bool used(std::uint32_t node) const { return before_[node] != kNobody || after_[node] != kNobody; }
-
-  /// Potential of a node: less the cost from there to the end.
-  void look_back() {
-    const std::uint32_t top = last_ * cells_;
-    for (std::uint32_t c = 0; c < cells_; ++c) set_potential(top + c, -task_.end_cost[c]);
-    for (std::uint32_t k = last_; k-- > 0;) {
-      const FlowInterval& interval = task_.intervals[k];
-      for (std::uint32_t c = 0; c < cells_; ++c) {
-        std::int32_t best = kFar;
-        for (std::uint32_t a = interval.reach->first[c]; a < interval.reach->first[c + 1]; ++a) {
-          best = std::min(best, interval.cost[a] - potential_[2 * ((k + 1) * cells_ + interval.reach->to[a])]);
-        }
-        set_potential(k * cells_ + c, best == kFar ? 0 : -best);
-      }
-    }
-  }
-  void set_potential(std::uint32_t node, std::int32_t value) {
-    potential_[2 * node] = potential_[2 * node + 1] = value;
-  }
-
-  void reach(std::uint32_t state, std::int32_t distance, std::uint32_t from) {
-    if (distance >= distance_[state] || distance >= end_distance_) return;
-    if (distance_[state] == kFar) touched_.push_back(state);
-    distance_[state] = distance;
-    parent_[state] = from;
-    // Among equals the later instant first: straight to the end.
-    push(state, distance);
-  }
-
-  void look_around(std::uint32_t state, std::int32_t distance) {
-    const std::uint32_t node = state / 2;
-    const std::int32_t here = distance + potential_[state];
-    if (state % 2 == 0) {
-      if (!used(node)) return reach(state + 1, here - potential_[state + 1], state);
-      const std::uint32_t before = before_[node];
-      if (before != kNobody) reach(2 * before + 1, here - cost_in_[node] - potential_[2 * before + 1], state);
-      return;
-    }
-    if (before_[node] != kNobody) reach(state - 1, here - potential_[state - 1], state);
-    const std::uint32_t k = node / cells_;
-    if (k == last_) {
-      if (used(node)) return;
-      const std::int32_t total = here + task_.end_cost[node % cells_] - end_potential_;
-      if (total < end_distance_) {
-        end_distance_ = total;
-        end_state_ = state;
-      }
-      return;
-    }
-    const FlowInterval& interval = task_.intervals[k];
-    const std::uint32_t next = (k + 1) * cells_;
-    const std::uint32_t end = interval.reach->first[node % cells_ + 1];
-    for (std::uint32_t a = interval.reach->first[node % cells_]; a < end; ++a) {
-      const std::uint32_t to = next + interval.reach->to[a];
-      reach(2 * to, here + interval.cost[a] - potential_[2 * to], state);
-    }
-  }
-
-  void push(std::uint32_t state, std::int32_t distance) {
-    open_.push_back((static_cast<std::uint64_t>(distance) << 32U) | (0xFFFFFFFFU - state));
-    std::push_heap(open_.begin(), open_.end(), std::greater<>());
-  }
-  std::pair<std::uint32_t, std::int32_t> pop() {
-    const std::uint64_t top = open_.front();
-    std::pop_heap(open_.begin(), open_.end(), std::greater<>());
-    open_.pop_back();
-    ++looked_at_;
-    return {0xFFFFFFFFU - static_cast<std::uint32_t>(top & 0xFFFFFFFFU), static_cast<std::int32_t>(top >> 32U)};
-  }
-
-  /// Searches leave potentials that hold but no longer lead straight to the end. This makes them exact again: what
-  /// everybody would still lose on the way from each state, by one search backwards from the end.
-  void look_back_again() {
-    const auto lower = [&](std::uint32_t state, std::int32_t distance) {
-      if (distance >= distance_[state]) return;
-      distance_[state] = distance;
-      push(state, distance);
-    };
-    const std::uint32_t top = last_ * cells_;
-    for (std::uint32_t c = 0; c < cells_; ++c) {
-      const std::uint32_t state = 2 * (top + c) + 1;
-      if (!used(top + c)) lower(state, task_.end_cost[c] + potential_[state] - end_potential_);
-    }
-    std::int32_t farthest = 0;
-    while (!open_.empty()) {
-      const auto [state, distance] = pop();
-      if (distance != distance_[state]) continue;
-      farthest = distance;
-      const std::uint32_t node = state / 2;
-      const std::int32_t here = distance - potential_[state];
-      if (state % 2 == 1) {
-        if (!used(node)) lower(state - 1, here + potential_[state - 1]);
-        const std::uint32_t after = after_[node];
-        if (after != kNobody) lower(2 * after, here - cost_in_[after] + potential_[2 * after]);
-        continue;
-      }
-      if (before_[node] != kNobody) lower(state + 1, here + potential_[state + 1]);
-      const std::uint32_t k = node / cells_;
-      if (k == 0) continue;
-      const FlowInterval& interval = task_.intervals[k - 1];
-      const std::uint32_t end = interval.reach->first[node % cells_ + 1];
-      for (std::uint32_t a = interval.reach->first[node % cells_]; a < end; ++a) {
-        const std::uint32_t from = 2 * ((k - 1) * cells_ + interval.reach->to[a]) + 1;
-        lower(from, here + interval.cost[interval.reach->back[a]] + potential_[from]);
-      }
-    }
-    for (std::size_t state = 0; state < distance_.size(); ++state) {
-      potential_[state] -= std::min(distance_[state], farthest);
-      distance_[state] = kFar;
-    }
-    looked_at_ = 0;
-  }
-
-  void route(std::uint32_t start) {
-    end_distance_ = kFar;
-    FL_CHECK(!used(start) || before_[start] == kNobody);
-    reach(2 * start + 1, 0, kNobody);
-    while (!open_.empty()) {
-      const auto [state, distance] = pop();
-      if (distance >= end_distance_) break;
-      if (distance == distance_[state]) look_around(state, distance);
-    }
-    FL_CHECK(end_distance_ < kFar);
-    open_.clear();
-    for (const std::uint32_t state : touched_) {
-      potential_[state] += std::min(distance_[state], end_distance_) - end_distance_;
-      distance_[state] = kFar;
-    }
-    touched_.clear();
-    walk_back();
-  }
-
-  void walk_back() {
-    std::uint32_t state = end_state_;
-    while (parent_[state] != kNobody) {
-      const std::uint32_t from = parent_[state];
-      const std::uint32_t node = state / 2;
-      if (state % 2 == 0 && from / 2 == node) {
-        before_[node] = after_[node] = kNobody;  // whoever was here goes elsewhere
-      } else if (state % 2 == 0) {
-        before_[node] = from / 2;
-        cost_in_[node] = cost_of(from / 2, node);
-        after_[from / 2] = node;
-      }
-      state = from;
-    }
-  }
-
-  [[nodiscard]] std::int32_t cost_of(std::uint32_t from, std::uint32_t to) const {
-    const FlowInterval& interval = task_.intervals[from / cells_];
-    const auto begin = interval.reach->to.begin() + interval.reach->first[from % cells_];
-    const auto end = interval.reach->to.begin() + interval.reach->first[from % cells_ + 1];
-    const auto found = std::lower_bound(begin, end, to % cells_);
-    return interval.cost[static_cast<std::size_t>(found - interval.reach->to.begin())];
-  }
-
-  [[nodiscard]] TimeFlow result() const {
-    TimeFlow out;
-    out.at.resize(last_ + 1, std::vector<CellIndex>(task_.start.size()));
-    for (std::size_t i = 0; i < task_.start.size(); ++i) {
-      std::uint32_t node = task_.start[i].value();
-      for (std::uint32_t k = 0; k <= last_; ++k) {
-        out.at[k][i] = CellIndex(node % cells_);
-        if (k == last_) break;
-        FL_CHECK(after_[node] != kNobody);
-        node = after_[node];
-        out.cost += cost_in_[node];
-      }
-      out.cost += task_.end_cost[node % cells_];
-    }
-    out.gap = out.cost - bound();
-    return out;
-  }
-
-  /// Value of the dual solution: what the potentials promise for each start, less what full nodes charge.
-  [[nodiscard]] std::int64_t bound() const {
-    std::int64_t value = 0;
-    for (const CellIndex cell : task_.start) value += end_potential_ - potential_[2 * cell.at() + 1];
-    for (std::uint32_t node = cells_; node < nodes(); ++node) {
-      value -= std::max(0, potential_[2 * node + 1] - potential_[2 * node]);
-    }
-    for (std::uint32_t c = 0; c < cells_; ++c) {
-      const std::int32_t out = potential_[2 * (last_ * cells_ + c) + 1];
-      value -= std::max(0, end_potential_ - out - task_.end_cost[c]);
-    }
-    return value;
-  }
-
-  const FlowTask& task_;
-  std::uint32_t cells_;
-  std::uint32_t last_;
-  std::vector<std::int32_t> potential_;  // for each state
-  std::vector<std::int32_t> distance_;
-  std::vector<std::uint32_t> parent_;
-  std::vector<std::uint32_t> before_;  // for each node, the node that the person here comes from, and goes to
-  std::vector<std::uint32_t> after_;
-  std::vector<std::int32_t> cost_in_;
-  std::vector<std::uint32_t> touched_;
-  std::vector<std::uint64_t> open_;  // a heap, the least first
-  std::int32_t end_potential_ = 0;
-  std::int32_t end_distance_ = kFar;
-  std::uint32_t end_state_ = 0;
-  std::size_t looked_at_ = 0;  // states since the potentials were exact
-};
+constexpr std::int32_t kFar = 1 << 30;
+constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+/// Marks in place of the node before: nobody is here; somebody is kept here whom nobody has joined; here from the
+/// start.
+constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+constexpr std::uint32_t kUnfilled = 0xFFFFFFFEU;
+constexpr std::uint32_t kSource = 0xFFFFFFFDU;
+bool is_node(std::uint32_t from) { return from < kSource; }
+/// Bids between two looks at whether the user wants to stop.
+constexpr std::size_t kBidsPerLook = 65536;
 
 }  // namespace
 
-void Reach::find_back() {
-  back.resize(to.size());
-  for (std::uint32_t c = 0; c + 1 < first.size(); ++c) {
-    for (std::uint32_t a = first[c]; a < first[c + 1]; ++a) {
-      const auto begin = to.begin() + first[to[a]];
-      const auto end = to.begin() + first[to[a] + 1];
-      back[a] = static_cast<std::uint32_t>(std::lower_bound(begin, end, c) - to.begin());
+TimeFlowSolver::TimeFlowSolver(const FlowTask& task)
+    : task_(task),
+      cells_(static_cast<std::uint32_t>(task.cells)),
+      last_(static_cast<std::uint32_t>(task.intervals.size())),
+      free_start_(task.start.empty()),
+      into_(task.cells * (task.intervals.size() + 1)),
+      out_(into_.size()),
+      from_(into_.size(), kEmpty),
+      next_(into_.size(), kNone),
+      kind_(into_.size(), 0) {
+  FL_CHECK(!task.intervals.empty() && (free_start_ || task.start.size() == task.people));
+}
+
+bool TimeFlowSolver::refine(std::int32_t epsilon, const Progress& progress) {
+  FL_CHECK(task_.stand.size() == into_.size());
+  epsilon_ = epsilon;
+  look_back();
+  for (std::size_t n = 0; enter(); ++n) {
+    if (n % kBidsPerLook == 0 && progress.stopped()) return false;
+    const std::uint32_t at = active_.back();
+    active_.pop_back();
+    bid(at);
+    if (n % from_.size() == from_.size() - 1) refresh();
+  }
+  for (std::uint32_t v = 0; v < from_.size(); ++v) {
+    if (from_[v] == kUnfilled) active_.push_back(v);
+  }
+  for (std::size_t n = 0; !active_.empty(); ++n) {
+    if (n % kBidsPerLook == 0 && progress.stopped()) return false;
+    const std::uint32_t at = active_.back();
+    active_.pop_back();
+    fill(at);
+  }
+  return true;
+}
+
+std::int32_t TimeFlowSolver::walk_to(std::uint32_t node) const {
+  return task_.intervals[node / cells_ - 1].cost[kind_[node]];
+}
+
+/// Labels that agree with the costs and the prices. Whoever stands where a price is asked is kept there, her walks are
+/// forgotten: she is active, and the node waits for somebody to come.
+void TimeFlowSolver::look_back() {
+  active_.clear();
+  for (std::uint32_t v = 0; v < from_.size(); ++v) into_[v] -= out_[v];  // the price
+  for (std::uint32_t k = last_ + 1; k-- > 0;) {
+    for (std::uint32_t c = 0; c < cells_; ++c) {
+      const std::uint32_t v = node(k, c);
+      out_[v] = k == last_ ? task_.stand[v] : onward(v).best;
+      const bool kept = from_[v] != kEmpty && into_[v] > 0 && (k > 0 || free_start_);
+      from_[v] = kept ? kUnfilled : kEmpty;
+      next_[v] = kNone;
+      into_[v] = out_[v] + (kept ? into_[v] : 0);
+      if (kept && k < last_) active_.push_back(v);
     }
+  }
+  open_.clear();
+  waiting_ = 0;
+  if (!free_start_) {
+    for (const CellIndex cell : task_.start) {
+      from_[cell.at()] = kSource;
+      active_.push_back(cell.value());
+    }
+    return;
+  }
+  for (std::uint32_t c = 0; c < cells_; ++c) {
+    if (out_[c] < kFar / 2) offer_start(c);
+  }
+  waiting_ = task_.people;
+  start_label_ = -kFar;
+}
+
+/// @return whether somebody is left to bid; who has not begun begins when nobody else is
+bool TimeFlowSolver::enter() {
+  while (active_.empty() && waiting_ > 0) begin_somewhere();
+  return !active_.empty();
+}
+
+void TimeFlowSolver::offer_start(std::uint32_t cell) {
+  open_.push_back((static_cast<std::uint64_t>(into_[cell] + kFar) << 32U) | cell);
+  std::push_heap(open_.begin(), open_.end(), std::greater<>());
+}
+
+void TimeFlowSolver::begin_somewhere() {
+  FL_CHECK(!open_.empty());
+  std::pop_heap(open_.begin(), open_.end(), std::greater<>());
+  const auto cell = static_cast<std::uint32_t>(open_.back() & 0xFFFFFFFFU);
+  const auto label = static_cast<std::int32_t>(open_.back() >> 32U) - kFar;
+  open_.pop_back();
+  if (from_[cell] == kSource) return;
+  if (into_[cell] > label) return offer_start(cell);
+  start_label_ = std::max(start_label_, label);
+  --waiting_;
+  if (from_[cell] == kEmpty) active_.push_back(cell);
+  from_[cell] = kSource;
+}
+
+TimeFlowSolver::Offer TimeFlowSolver::onward(std::uint32_t at) const {
+  const std::uint32_t k = at / cells_;
+  const FlowInterval& interval = task_.intervals[k];
+  const Reach& reach = *interval.reach;
+  const std::uint32_t c = at - k * cells_;
+  const std::int32_t* into = into_.data() + node(k + 1, 0);
+  Offer offer{kFar, kFar, 0, 0};
+  std::uint32_t best_walk = 0;
+  for (std::uint32_t a = reach.first[c]; a < reach.first[c + 1]; ++a) {
+    const std::int32_t cost = interval.cost[reach.kind[a]] + into[reach.to[a]];
+    if (cost < offer.best) {
+      offer.second = offer.best;
+      offer.best = cost;
+      best_walk = a;
+    } else {
+      offer.second = std::min(offer.second, cost);
+    }
+  }
+  if (offer.best == kFar) return offer;
+  offer.node = node(k + 1, reach.to[best_walk]);
+  offer.kind = reach.kind[best_walk];
+  offer.best += task_.stand[at];
+  if (offer.second < kFar) offer.second += task_.stand[at];
+  return offer;
+}
+
+/// Somebody who stands at a node chooses where to go next, or gives the node up.
+void TimeFlowSolver::bid(std::uint32_t at) {
+  if (from_[at] == kEmpty || next_[at] != kNone || at >= node(last_, 0)) return;
+  const Offer offer = onward(at);
+  std::int32_t back = kFar;
+  if (is_node(from_[at])) {
+    back = out_[from_[at]] - task_.stand[from_[at]] - walk_to(at);
+  } else if (from_[at] == kUnfilled) {
+    back = into_[at];
+  } else if (free_start_) {
+    back = start_label_;
+  }
+  out_[at] = offer.best;
+  if (offer.best > back + epsilon_) {
+    into_[at] = offer.best;
+    return leave(at);
+  }
+  const std::uint32_t to = offer.node;
+  const std::uint32_t before = from_[to];
+  if (is_node(before)) {
+    const std::int32_t raise = std::min(offer.second, std::max(back, offer.best)) - offer.best + epsilon_;
+    into_[to] += raise;
+    out_[at] += raise;
+    next_[before] = kNone;
+    active_.push_back(before);
+  } else if (before == kEmpty) {
+    active_.push_back(to);
+  }
+  next_[at] = to;
+  from_[to] = at;
+  kind_[to] = offer.kind;
+}
+
+/// What has become dearer later on is known everywhere at once, not only where somebody came to find out.
+void TimeFlowSolver::refresh() {
+  for (std::uint32_t v = node(last_, 0); v-- > 0;) {
+    if (from_[v] == kEmpty) into_[v] = out_[v] = std::max(out_[v], onward(v).best);
   }
 }
 
-std::optional<TimeFlow> cheapest_flow(const FlowTask& task, const Progress& progress) {
-  FL_CHECK(!task.intervals.empty() && task.end_cost.size() == task.cells);
-  return FlowSearch(task).run(progress);
+void TimeFlowSolver::leave(std::uint32_t at) {
+  const std::uint32_t before = from_[at];
+  from_[at] = kEmpty;
+  if (is_node(before)) {
+    next_[before] = kNone;
+    active_.push_back(before);
+  } else if (before == kSource) {
+    offer_start(at);
+    ++waiting_;
+  }
+}
+
+TimeFlowSolver::Offer TimeFlowSolver::backward(std::uint32_t at) const {
+  const std::uint32_t k = at / cells_ - 1;
+  const FlowInterval& interval = task_.intervals[k];
+  const Reach& reach = *interval.reach;
+  const std::uint32_t c = at - (k + 1) * cells_;
+  Offer offer{-kFar, -kFar, kNone, 0};
+  for (std::uint32_t a = reach.first[c]; a < reach.first[c + 1]; ++a) {
+    const std::uint32_t u = node(k, reach.to[a]);
+    if (k == 0 && !free_start_ && from_[u] != kSource) continue;
+    const std::uint8_t kind = reach.mirror[reach.kind[a]];
+    const std::int32_t worth = out_[u] - task_.stand[u] - interval.cost[kind];
+    if (worth > offer.best) {
+      offer = {worth, offer.best, u, kind};
+    } else {
+      offer.second = std::max(offer.second, worth);
+    }
+  }
+  return offer;
+}
+
+/// A node that nobody came to gets cheaper until somebody comes, or whoever is kept there leaves it.
+void TimeFlowSolver::fill(std::uint32_t at) {
+  if (from_[at] != kUnfilled) return;
+  const std::int32_t worth = task_.stand[at] + (next_[at] == kNone ? 0 : walk_to(next_[at]) + into_[next_[at]]);
+  if (at < cells_) return fill_start(at, worth);
+  const Offer offer = backward(at);
+  if (offer.best < worth - epsilon_) return give_up(at, offer.best);
+  const std::uint32_t from = offer.node;
+  into_[at] = offer.best;
+  if (from_[from] == kEmpty) {
+    from_[from] = kUnfilled;
+    into_[from] = out_[from];
+    active_.push_back(from);
+  } else {
+    const std::int32_t fall = offer.best - std::max(offer.second, std::min(worth, offer.best)) + epsilon_;
+    into_[at] -= fall;
+    out_[from] -= fall;
+    from_[next_[from]] = kUnfilled;
+    active_.push_back(next_[from]);
+  }
+  next_[from] = at;
+  from_[at] = from;
+  kind_[at] = offer.kind;
+}
+
+/// Whoever began where it is dearest begins here instead.
+void TimeFlowSolver::fill_start(std::uint32_t at, std::int32_t worth) {
+  std::uint32_t dearest = kNone;
+  for (std::uint32_t u = 0; u < cells_; ++u) {
+    if (from_[u] == kSource && (dearest == kNone || into_[u] > into_[dearest])) dearest = u;
+  }
+  if (into_[dearest] < worth - epsilon_) return give_up(at, into_[dearest]);
+  into_[at] = std::min(into_[at], into_[dearest] - epsilon_);
+  from_[at] = kSource;
+  from_[dearest] = kUnfilled;
+  active_.push_back(dearest);
+}
+
+void TimeFlowSolver::give_up(std::uint32_t at, std::int32_t label) {
+  from_[at] = kEmpty;
+  into_[at] = out_[at] = label;
+  if (next_[at] == kNone) return;
+  from_[next_[at]] = kUnfilled;
+  active_.push_back(next_[at]);
+  next_[at] = kNone;
+}
+
+std::vector<std::uint32_t> TimeFlowSolver::starts() const {
+  std::vector<std::uint32_t> nodes;
+  for (const CellIndex cell : task_.start) nodes.push_back(cell.value());
+  if (!free_start_) return nodes;
+  for (std::uint32_t c = 0; c < cells_; ++c) {
+    if (from_[c] == kSource) nodes.push_back(c);
+  }
+  return nodes;
+}
+
+TimeFlow TimeFlowSolver::result() const {
+  TimeFlow flow;
+  flow.at.resize(last_ + 1);
+  std::vector<std::uint32_t> now = starts();
+  FL_CHECK(now.size() == task_.people);
+  for (std::uint32_t k = 0; k <= last_; ++k) {
+    for (std::uint32_t& v : now) {
+      flow.at[k].push_back(CellIndex(v - k * cells_));
+      flow.cost += task_.stand[v];
+      if (k == last_) continue;
+      FL_CHECK(next_[v] != kNone);
+      v = next_[v];
+      flow.cost += walk_to(v);
+    }
+  }
+  flow.bound = bound();
+  return flow;
+}
+
+/// What everybody would pay on the cheapest way at these prices, less the prices: labels are worked out anew.
+std::int64_t TimeFlowSolver::bound() const {
+  std::int64_t value = 0;
+  std::vector<std::int32_t> behind(cells_, 0);
+  std::vector<std::int32_t> here(cells_);
+  for (std::uint32_t k = last_ + 1; k-- > 0;) {
+    for (std::uint32_t c = 0; c < cells_; ++c) {
+      const std::uint32_t v = node(k, c);
+      std::int32_t best = k == last_ ? 0 : kFar;
+      if (k < last_) {
+        const FlowInterval& interval = task_.intervals[k];
+        const Reach& reach = *interval.reach;
+        for (std::uint32_t a = reach.first[c]; a < reach.first[c + 1]; ++a) {
+          best = std::min(best, interval.cost[reach.kind[a]] + behind[reach.to[a]]);
+        }
+      }
+      const bool priced = from_[v] != kEmpty && (k > 0 || free_start_);
+      const std::int32_t price = priced ? std::max(0, into_[v] - out_[v]) : 0;
+      here[c] = best == kFar ? kFar : best + task_.stand[v] + price;
+      value -= price;
+    }
+    std::swap(here, behind);
+  }
+  if (!free_start_) {
+    for (const CellIndex cell : task_.start) value += behind[cell.at()];
+    return value;
+  }
+  std::nth_element(behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(task_.people - 1), behind.end());
+  for (std::size_t i = 0; i < task_.people; ++i) value += behind[i];
+  return value;
 }
 
 }  // namespace footlight::planner

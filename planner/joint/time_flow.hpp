@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -11,41 +12,96 @@
 namespace footlight::planner {
 
 /// Which cells can be reached from each cell in one interval: the ones of cell c are to[first[c]] .. to[first[c + 1]].
-/// Symmetric, and every cell on which people may stand reaches itself; the others reach nothing.
+/// Symmetric, and every cell on which people may stand reaches itself; the others reach nothing. What a walk costs
+/// depends on its kind.
 struct Reach {
   std::vector<std::uint32_t> first;
   std::vector<std::uint32_t> to;
-  std::vector<std::uint32_t> back;  ///< for each walk the position of the same walk the other way round
-
-  /// Fills `back`. O(walks log)
-  void find_back();
+  std::vector<std::uint8_t> kind;          ///< of each walk
+  std::array<std::uint8_t, 256> mirror{};  ///< kind of the same walk the other way round
 };
 
-/// One interval: the cost of each walk of `reach`, in the same order.
+/// One interval.
 struct FlowInterval {
   const Reach* reach = nullptr;
-  std::vector<std::int32_t> cost;
+  std::array<std::int32_t, 256> cost{};  ///< of a walk of each kind
 };
 
-/// People walk from fixed cells through intervals and end where they like; no cell is held by two at an instant.
+/// People walk through intervals and end where they like; no cell is held by two at an instant.
+/// |cost| < 2^20; sums over all intervals < 2^28.
 struct FlowTask {
   std::size_t cells = 0;
-  std::vector<CellIndex> start;         ///< distinct, one for each person
-  std::vector<FlowInterval> intervals;  ///< at least one; |cost| < 2^20, sums over all intervals < 2^30
-  std::vector<std::int32_t> end_cost;   ///< of standing on each cell at the last instant
+  std::size_t people = 0;
+  std::vector<CellIndex> start;         ///< distinct, one for each person; empty: they begin where they like
+  std::vector<FlowInterval> intervals;  ///< at least one
+  std::vector<std::int32_t> stand;      ///< cost of being on each cell at each instant: (intervals + 1) x cells
 };
 
 struct TimeFlow {
   std::vector<std::vector<CellIndex>> at;  ///< for each instant (intervals + 1) and person
   std::int64_t cost = 0;
-  /// cost less the value of the dual solution found with it: 0 proves that no plan of walks costs less.
-  std::int64_t gap = 0;
+  /// No plan of walks costs less: the value of the dual solution (a price for each cell and instant) found with it.
+  std::int64_t bound = 0;
 };
 
-/// The cheapest walks of all people through all intervals together: a minimum-cost flow in the network of cells and
-/// instants with one person a node, by successive shortest paths (Dijkstra, potentials; Ahuja, Magnanti, Orlin 1993,
-/// section 9.7). The first potentials are the exact costs to the end, so that a search goes straight ahead until people
-/// compete. @return nothing when stopped. O(people x walks log nodes) at worst. Deterministic. Thread: reentrant.
-[[nodiscard]] std::optional<TimeFlow> cheapest_flow(const FlowTask& task, const Progress& progress);
+/// Cheap walks of all people through all intervals together: a minimum-cost flow in the network of cells and instants
+/// with one person a node. Epsilon relaxation with scaling (Bertsekas, Tsitsiklis 1989, sections 5.3-5.4), an auction:
+/// whoever stands at a node bids for the next one up to what her second choice would cost, who is outbid chooses again
+/// or takes her last step back, and places that are too dear for everybody come down until somebody comes. The first
+/// labels are the exact costs to the end of somebody who is alone. Deterministic. Memory: 21 bytes a node.
+class TimeFlowSolver {
+ public:
+  /// @param task must outlive the solver; its costs may change between calls of `refine`
+  explicit TimeFlowSolver(const FlowTask& task);
+
+  /// Finds walks that cost at most `epsilon` a person and interval more than the best, mostly far less. Prices that
+  /// were found before are where it starts: going from a large epsilon to a small one is quicker than a small one
+  /// alone.
+  /// @return false when stopped
+  bool refine(std::int32_t epsilon, const Progress& progress);
+  /// After at least one `refine`. O(walks)
+  [[nodiscard]] TimeFlow result() const;
+
+ private:
+  /// What somebody at a node, or a node that waits for somebody, can have.
+  struct Offer {
+    std::int32_t best = 0;
+    std::int32_t second = 0;
+    std::uint32_t node = 0;
+    std::uint8_t kind = 0;
+  };
+
+  [[nodiscard]] std::uint32_t node(std::uint32_t k, std::uint32_t cell) const { return k * cells_ + cell; }
+  [[nodiscard]] std::int32_t walk_to(std::uint32_t node) const;
+  [[nodiscard]] Offer onward(std::uint32_t at) const;
+  [[nodiscard]] Offer backward(std::uint32_t at) const;
+  void look_back();
+  void refresh();
+  bool enter();
+  void begin_somewhere();
+  void offer_start(std::uint32_t cell);
+  void bid(std::uint32_t at);
+  void leave(std::uint32_t at);
+  void fill(std::uint32_t at);
+  void fill_start(std::uint32_t at, std::int32_t worth);
+  void give_up(std::uint32_t at, std::int32_t label);
+  [[nodiscard]] std::vector<std::uint32_t> starts() const;
+  [[nodiscard]] std::int64_t bound() const;
+
+  const FlowTask& task_;
+  std::uint32_t cells_;
+  std::uint32_t last_;
+  bool free_start_;
+  std::int32_t epsilon_ = 0;
+  std::vector<std::int32_t> into_;   ///< for each node, cost to the end with the price of the node
+  std::vector<std::int32_t> out_;    ///< without it
+  std::vector<std::uint32_t> from_;  ///< for each node, the node before, or a mark
+  std::vector<std::uint32_t> next_;
+  std::vector<std::uint8_t> kind_;  ///< of the walk here
+  std::vector<std::uint32_t> active_;
+  std::vector<std::uint64_t> open_;  ///< free cells of the first instant, a heap, the cheapest on top
+  std::int32_t start_label_ = 0;     ///< what beginning anywhere costs at most
+  std::size_t waiting_ = 0;          ///< people who have not begun
+};
 
 }  // namespace footlight::planner

@@ -84,7 +84,8 @@ TEST(Pictures, AreaMayGrowTenfoldAndShrinkAgain) {
     const Plan plan = sound_plan(show, film).plan;
     const auto most = std::max_element(plan.formations.begin(), plan.formations.end(),
                                        [](const auto& a, const auto& b) { return a.in_picture < b.in_picture; });
-    EXPECT_GT(most->in_picture, 130);
+    // Joint leaves out who would be outside of the picture on the way for longer than inside of it.
+    EXPECT_GT(most->in_picture, model == PlannerModel::joint ? 90 : 130);
     EXPECT_GT(on_picture(show, plan, film, *most), 0.8);
     EXPECT_LT(plan.formations.back().in_picture, 40);
   }
@@ -113,7 +114,7 @@ TEST(Pictures, SeveralPartsHolesAndThinLinesAreDrawnByExactlyEverybody) {
   for (const PlannerModel model : kModels) {
     const Show show = floor_of(120, model);
     const Plan plan = sound_plan(show, film).plan;
-    EXPECT_GE(plan.formations.front().in_picture, 110);
+    EXPECT_GE(plan.formations.front().in_picture, 100);
     EXPECT_GT(on_picture(show, plan, film, plan.formations.front()), 0.6);
   }
 }

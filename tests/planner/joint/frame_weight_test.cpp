@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planner/joint/picture_worth.hpp"
+#include "planner/joint/frame_weight.hpp"
 
 #include <gtest/gtest.h>
 
 #include "planner/formation/best_single.hpp"
-#include "planner/formation/summed_area.hpp"
-#include "tests/support/films.hpp"
 
 namespace footlight::planner {
 namespace {
 
 double loss(double people, double covered, double area) {
-  return 1 - covered / people + 1 - covered / (area + people - covered);
+  return 1 - covered / people + kIouWeight * (1 - covered / (area + people - covered));
 }
 
 TEST(FrameWeight, IsTheGradientOfBothFigures) {
@@ -22,23 +20,9 @@ TEST(FrameWeight, IsTheGradientOfBothFigures) {
   EXPECT_NEAR(gained / step, weight.alpha * rho - weight.beta, 1e-6);
 }
 
-TEST(FrameWeight, AsksTwoThirdsOfPictureFromWhoComesToAPerfectDrawing) {
+TEST(FrameWeight, AsksForMostOfACellFromWhoComesToAPerfectDrawing) {
   const FrameWeight weight = frame_weight(100, 100, 100);
-  EXPECT_NEAR(weight.beta / weight.alpha, 2.0 / 3, 1e-12);
-}
-
-TEST(PictureField, IsTheShareOfPictureAtEveryCell) {
-  const Mask disc = tests::disc(80, 60, 40, 30, 17);
-  const StageToFrame map{2, 0, 40, 0, -2, 55};
-  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
-    const Grid grid = *Grid::make(kind, 30, 20, 1.0);
-    const PictureField field(disc, grid, map);
-    const auto shares = cell_shares(SummedArea(disc), grid, map);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const Point at = grid.centre(CellIndex::of(i));
-      EXPECT_NEAR(field.at(at.x, at.y), shares[i], kind == GridKind::square ? 1e-5 : 0.2);
-    }
-  }
+  EXPECT_NEAR(weight.beta / weight.alpha, (1 + kIouWeight) / (1 + 2 * kIouWeight), 1e-12);
 }
 
 TEST(BestSingle, TakesAsManyPeopleAsHelp) {
