@@ -18,6 +18,8 @@ using Positions = std::vector<std::uint32_t>;
 
 /// The regions of each further division are so many times smaller.
 constexpr int kDivision = 4;
+/// More regions than this on a side are put together by a layer of their own: the transport between them is dense.
+constexpr std::size_t kMostRegions = 300;
 
 class Matcher {
  public:
@@ -28,7 +30,14 @@ class Matcher {
   Positions run() {
     Positions everybody(sources_.size());
     std::iota(everybody.begin(), everybody.end(), 0U);
-    match(everybody, everybody, options_.layers, {options_.region_size, options_.region_variance_m2});
+    int layers = options_.layers;
+    RegionLimits limits{options_.region_size, options_.region_variance_m2};
+    while (layers > 1 && everybody.size() > kMostRegions * static_cast<std::size_t>(limits.most_people)) {
+      limits.most_people *= kDivision;
+      limits.variance_m2 *= kDivision;
+      ++layers;
+    }
+    match(everybody, everybody, layers, limits);
     return std::move(target_of_);
   }
 
