@@ -10,6 +10,7 @@
 
 #include "app/check_command.hpp"
 #include "app/command.hpp"
+#include "app/dark_command.hpp"
 #include "app/dryrun_command.hpp"
 #include "app/export_command.hpp"
 #include "app/measure_command.hpp"
@@ -24,7 +25,7 @@ namespace {
 
 constexpr AddCommand kCommands[] = {
     add_new_command, add_check_command,  add_plan_command,   add_measure_command,
-    add_why_command, add_export_command, add_dryrun_command,
+    add_why_command, add_export_command, add_dryrun_command, add_dark_command,
 };
 
 constexpr const char* kFooter =

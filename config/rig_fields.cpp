@@ -29,6 +29,10 @@ const Listing& bus_listing() {
            .type = Type::text,
            .doc = "Modbus: name of a shipped device profile, or a YAML file beside the rig.",
            .otherwise = "footlight-marker"},
+          {.key = "supply",
+           .type = Type::text,
+           .doc = "Power supply of its nodes, for those that name none; `footlight dark` asks what hangs on it.",
+           .otherwise = "not known"},
       }};
   return kListing;
 }
@@ -60,6 +64,7 @@ const Listing& node_listing() {
            .required = true,
            .listing = &wearable_listing(),
            .list = true},
+          {.key = "supply", .type = Type::text, .doc = "Power supply.", .otherwise = "the bus's"},
       }};
   return kListing;
 }

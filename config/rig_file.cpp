@@ -93,6 +93,7 @@ class RigReader {
     }
     if (kind) bus.kind = *kind;
     if (url) bus.url = *url;
+    bus.supply = reader.text("supply").value_or("");
     bus.bits_per_second = speed.value_or(bus.kind == BusKind::can ? 500'000 : 115'200);
     if (kind && speed) check_speed(reader, bus);
     if (known) read_bus_profile(reader, bus);
@@ -163,6 +164,7 @@ class RigReader {
     node.address = *address;
     const Bus& on = rig_.buses[bus->at()];
     node.name = reader.text("name").value_or(on.name + "-" + std::to_string(*address));
+    node.supply = reader.text("supply").value_or(on.supply);
     if (*address > last_address(on.kind)) {
       return reader.error("address", "the address " + std::to_string(*address) + " is out of range",
                           std::string(to_text(on.kind)) + ": 1 to " + std::to_string(last_address(on.kind)));
@@ -334,6 +336,7 @@ class RigReader {
     }
     for (Node& node : lay_nodes(lamps, rig_.buses, buses, capacities, taken, channels)) {
       node.position = floor.position();
+      node.supply = rig_.buses[node.bus.at()].supply;
       rig_.nodes.push_back(std::move(node));
     }
   }

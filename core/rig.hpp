@@ -39,6 +39,7 @@ struct Bus {
   int bits_per_second = 115'200;         ///< serial, RTU: 1200..4,000,000; CAN: 10,000..1,000,000
   std::optional<ModbusProfile> profile;  ///< Modbus only
   Position position;
+  std::string supply{};  ///< power supply of its nodes that name none; empty: not known
 
   [[nodiscard]] bool simulated() const { return url.rfind("sim://", 0) == 0; }
 };
@@ -59,6 +60,7 @@ struct Node {
   int address = 1;                ///< CAN 1..126, Modbus 1..247, serial 1..254; unique on its bus
   std::vector<Channel> channels;  ///< 1..32
   Position position;
+  std::string supply{};  ///< power supply, as technicians call it; empty: not known
 };
 
 /// One lamp: channel `channel` of node `node`.

@@ -33,7 +33,7 @@ TEST(CommandLine, TellsItsVersionAndItsCommands) {
   const Ran help = footlight({"--help"});
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
-  for (const std::string command : {"new", "check", "plan", "measure", "why", "export", "dryrun"}) {
+  for (const std::string command : {"new", "check", "plan", "measure", "why", "export", "dryrun", "dark"}) {
     EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
     const Ran one = footlight({command, "--help"});
     EXPECT_EQ(one.status, 0);
@@ -280,6 +280,22 @@ TEST_F(StarterShow, APlanOfAFilmIsMeasuredAlikeWithoutItsShowAndSaysWhenTheFilmI
   EXPECT_EQ(gone.status, 0);
   EXPECT_THAT(gone.err, StartsWith("note: the drawing of section ring is not measured: "));
   EXPECT_EQ(json::parse(gone.out)["theta_dev"], json());
+}
+
+TEST_F(StarterShow, DarkNodesAreJudgedOneByOne) {
+  const Ran ran = footlight({"dark", show_, "--json", "-q"});
+  EXPECT_EQ(ran.status, 0);
+  const json told = json::parse(ran.out);
+  EXPECT_EQ(told["nodes"], 3);
+  EXPECT_EQ(told["supplies"], 0);
+  ASSERT_EQ(told["units"].size(), 3U);
+  for (const json& unit : told["units"]) EXPECT_LE(unit["unsafe"], unit["not_shown"]);
+  EXPECT_THAT(footlight({"dark", show_, "-q"}).out, HasSubstr("of 3 nodes have cues that become unsafe when dark\n"));
+}
+
+TEST_F(StarterShow, ARefusedPlanHasNoDarkNodes) {
+  make_unwalkable();
+  EXPECT_EQ(footlight({"dark", show_, "-q"}).status, 3);
 }
 
 TEST_F(StarterShow, ExportsThreeFiles) {

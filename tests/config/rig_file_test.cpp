@@ -109,6 +109,22 @@ TEST_F(RigFile, ReadsBusesAndNodes) {
   EXPECT_TRUE(diagnostics_.empty());
 }
 
+TEST_F(RigFile, ASupplyIsTheNodesOwnOrItsBuses) {
+  const Rig rig = right(
+      "rig: 1\nbuses:\n  - {name: a, url: \"sim://can\", supply: left}\n  - {name: b, url: \"sim://can\"}\n"
+      "nodes:\n  - {bus: a, address: 9, channels: A1}\n  - {bus: a, address: 10, channels: B1, supply: tower 2}\n"
+      "  - {bus: b, address: 1, channels: C1}\nfloor: {buses: [a]}\n");
+  std::set<std::string> supplies;
+  for (const Node& node : rig.nodes) {
+    const bool own = node.bus == BusIndex(0) && node.address == 10;
+    EXPECT_EQ(node.supply, own ? "tower 2" : node.bus == BusIndex(0) ? "left" : "") << node.name;
+    supplies.insert(node.supply);
+  }
+  EXPECT_EQ(supplies.size(), 3U);
+  EXPECT_EQ(messages("rig: 1\nbuses: [{name: a, url: \"sim://can\", supply: []}]\nfloor: {buses: [a]}\n"),
+            "rig.yaml:2:45: error: buses[0].supply: a list stands where a single value belongs\n");
+}
+
 TEST_F(RigFile, LaysAWholeFloorInAFewLines) {
   show_ = show_of(84, 48);
   const Rig rig = right(std::string(kBuses) + "floor: {buses: [can-a, rtu-a, ser], wearables: false}\n");
