@@ -46,7 +46,8 @@ class ShowPlanner {
     FL_CHECK(films_.size() == show_.sections.size());
     if (show_.performers.empty()) return input_error(show_.file + ": error: performers: the show has nobody in it");
     if (show_.sections.empty()) return input_error(show_.file + ": error: sections: the show has no section");
-    const Ways ways(show_.stage, show_.stage.clearance_m / 2);
+    const double widest_m = show_.performers[widest_->at()].radius_m;
+    const Ways ways(show_.stage, std::max(show_.stage.clearance_m / 2, widest_m));
     const bool slow = std::any_of(show_.performers.begin(), show_.performers.end(),
                                   [](const Performer& performer) { return performer.max_speed_mps > 0; });
     if (slow) {
@@ -74,6 +75,8 @@ class ShowPlanner {
           "everybody walks as slowly as the slowest: no tracks are slow enough for those with limits of their own");
     }
     if (!write_facts(*chain)) return interrupted();
+    note_lag();
+    note_waits(*chain);
     progress_.tell("validate", 0);
     const Verdict verdict = validate(planned_.plan);
     planned_.plan.valid = verdict.valid();
@@ -280,6 +283,65 @@ class ShowPlanner {
           "{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: everybody "
           "is planned that far apart, and many may have to wait",
           widest_two(), widest_two_m(), bound_m));
+    }
+  }
+
+  /// The transitions that end in a section and do not tolerate the stage's lag.
+  void note_lag() {
+    const double lag_s = to_seconds(show_.stage.lag);
+    const double spare_m = show_.stage.grid.clearance_bound_m() - clearance_m_;
+    Plan& plan = planned_.plan;
+    for (std::size_t s = 0; s < plan.sections.size(); ++s) {
+      const Instant first = s > 0 ? plan.sections[s - 1].end : Instant::min();
+      const Instant last = s + 1 < plan.sections.size() ? plan.sections[s].end : Instant::max();
+      int count = 0;
+      int short_of = 0;
+      const TransitionFacts* worst = nullptr;
+      for (const TransitionFacts& facts : plan.transitions) {
+        if (facts.end <= first || facts.end > last) continue;
+        ++count;
+        if (facts.tolerated_lag_s >= lag_s - 1e-9) continue;
+        ++short_of;
+        if (worst == nullptr || facts.tolerated_lag_s < worst->tolerated_lag_s) worst = &facts;
+      }
+      if (worst == nullptr) continue;
+      std::string helps = "a longer section or a smaller clearance would help";
+      if (spare_m > 0)
+        helps = fmt::format("walks of at most {:.2f} m/s tolerate it: a longer section", spare_m / lag_s);
+      plan.sections[s].notes.push_back(fmt::format(
+          "in {} of {} transitions people come too near when they are {:g} s late; least is tolerated, {:.3f} "
+          "s, in the one from count {:g}; {}",
+          short_of, count, lag_s, worst->tolerated_lag_s, show_.tempo.count_at(worst->start), helps));
+    }
+  }
+
+  /// Who leaves later or is there earlier than the others.
+  void note_waits(const Chain& chain) {
+    std::vector<int> waits(show_.sections.size(), 0);
+    std::vector<std::string> example(show_.sections.size());
+    for (std::size_t k = 0; k < chain.legs.size(); ++k) {
+      if (chain.legs[k].timing.empty()) continue;
+      const std::size_t s = chain.stops[k + 1].section.at();
+      const Instant start = chain.stops[k].depart;
+      const Instant end = chain.stops[k + 1].arrive;
+      for (std::size_t p = 0; p < show_.performers.size(); ++p) {
+        const Walking own = walking(chain, k, p);
+        if (own.start == start && own.end == end) continue;
+        if (waits[s]++ > 0) continue;
+        const auto counts = [&](Instant from, Instant to) {
+          return std::round(100 * (show_.tempo.count_at(to) - show_.tempo.count_at(from))) / 100;
+        };
+        example[s] = fmt::format(
+            "performer {} leaves {:g} counts later and is there {:g} counts earlier than the others "
+            "who walk from count {:g}",
+            show_.performers[p].id, counts(start, own.start), counts(own.end, end), show_.tempo.count_at(start));
+      }
+    }
+    for (std::size_t s = 0; s < waits.size(); ++s) {
+      if (waits[s] == 0) continue;
+      planned_.plan.sections[s].notes.push_back(fmt::format(
+          "{} walk{} made one after the other, since people would come too near on them or when they are late: {}",
+          waits[s], waits[s] == 1 ? " is" : "s are", example[s]));
     }
   }
 

@@ -191,7 +191,7 @@ class Judge {
 
   /// Counted once for each stretch between neighbouring mark instants, whoever's marks they are, as other judges do.
   void walk_blocked(std::uint32_t person, const judge::Stand& from, const judge::Stand& to, Findings& out) const {
-    const double limit = plan_.stage.clearance_m / 2;
+    const double limit = std::max(plan_.stage.clearance_m / 2, plan_.radius_m[person]);
     if (blocked_.nearer_than(from.at, to.at, limit - judge::kBlockedTolerance_m).empty()) return;
     const auto& cuts = walks_.times();
     auto cut = std::upper_bound(cuts.begin(), cuts.end(), from.time);

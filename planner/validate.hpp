@@ -18,7 +18,7 @@ struct Violation {
     same_cell,  ///< two people on one cell
     too_close,  ///< nearer than the clearance while walking or standing
     too_fast,
-    into_blocked,     ///< a walk nearer to a blocked cell than half of the clearance
+    into_blocked,     ///< a walk nearer to a blocked cell than half of the clearance, or the body's radius
     wrong_formation,  ///< a formation differs from the marks of its instant
   };
   Kind kind = Kind::times;

@@ -36,7 +36,7 @@ class ChainBuilder {
     for (const CellIndex cell : task.show->stage.reserve) reserve_[cell.at()] = 1;
     StageHash floor("floor");
     floor.add(grid_.kind()).add(grid_.columns()).add(grid_.rows()).add(grid_.pitch_m());
-    floor.list(task.show->stage.blocked).add(task.show->stage.clearance_m);
+    floor.list(task.show->stage.blocked).add(ways_.keep_m());
     floor_ = floor.key();
   }
 

@@ -8,13 +8,15 @@
 
 namespace footlight::planner {
 
-/// Where people can stand and walk: blocked cells, as their outlines on the floor, are kept at half of the clearance.
+/// Where people can stand and walk: blocked cells, as their outlines on the floor, are kept at a distance all the way:
+/// half of the clearance, or the widest body's radius where that is more.
 class Ways {
  public:
   /// @param keep_m how far from a blocked cell's outline everybody stays
   Ways(const Stage& stage, double keep_m);
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
+  [[nodiscard]] double keep_m() const { return keep_m_; }
   /// Nothing stands in anybody's way on this stage.
   [[nodiscard]] bool open() const { return blocked_count_ == 0; }
   /// Cells on which somebody may stand, one flag a cell.

@@ -223,6 +223,62 @@ TEST(PlanShow, RefusesASectionThatCannotBeWalkedAndSaysWhatWouldDo) {
           "one before shorter, or slow the music to 21 counts a minute)"));
 }
 
+TEST(PlanShow, EveryTransitionToleratesTheLagOfTheStage) {
+  for (const PlannerModel model : {PlannerModel::flat, PlannerModel::hierarchical, PlannerModel::joint}) {
+    Show show = growing_show(70);
+    show.sections[0].planner.model = model;
+    const auto planned = plan_show(show, {growing_film()});
+    ASSERT_TRUE(planned) << planned.error().message;
+    expect_sound(*planned, show);
+    for (const TransitionFacts& facts : planned->plan.transitions) EXPECT_GE(facts.tolerated_lag_s, 0.2 - 1e-9);
+  }
+}
+
+TEST(PlanShow, SaysWhereTheLagIsNotToleratedAndRefusesNothingForIt) {
+  Show show = show_with(2, GridKind::square, 40, 4);
+  show.stage.lag = seconds(1.5);
+  const auto at = [&](int column) { return show.stage.grid.index({column, 0}); };
+  show.sections.push_back(section_of("start", CellsSource{"start.csv", {at(0), at(1)}}, 1, 0, 0, 31));
+  show.sections.push_back(section_of("on", CellsSource{"on.csv", {at(14), at(15)}}, 22, 0, 0, 34));
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  EXPECT_TRUE(planned->plan.valid);
+  ASSERT_EQ(planned->plan.sections[1].notes.size(), 1U);
+  EXPECT_THAT(planned->plan.sections[1].notes.front(),
+              testing::StartsWith("in 1 of 1 transitions people come too near when they are 1.5 s late; least is "
+                                  "tolerated, 0.375 s, in the one from count 1; walks of at most 0.14 m/s tolerate it: "
+                                  "a longer section"));
+}
+
+TEST(PlanShow, NamedPeopleWhoseWaysCrossWalkOneAfterTheOther) {
+  Show show = show_with(2, GridKind::square, 20, 20);
+  const auto at = [&](int column, int row) { return show.stage.grid.index({column, row}); };
+  show.sections.push_back(section_of("start", CellsSource{"start.csv", {at(2, 6), at(6, 6)}}, 1, 0, 0, 31));
+  show.sections.push_back(section_of("cross", CellsSource{"cross.csv", {at(6, 2), at(2, 2)}}, 17, 0, 0, 34));
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  EXPECT_EQ(planned->plan.formations.back().cells, (std::vector<CellIndex>{at(6, 2), at(2, 2)}));
+  EXPECT_GE(planned->plan.transitions.front().tolerated_lag_s, 0.2 - 1e-9);
+  ASSERT_EQ(planned->plan.sections[1].notes.size(), 1U);
+  EXPECT_THAT(planned->plan.sections[1].notes.front(), testing::HasSubstr("made one after the other"));
+}
+
+TEST(PlanShow, WideBodiesKeepOffSetPiecesAllTheWay) {
+  Show show = show_with(1, GridKind::square, 12, 12);
+  show.performers[0].radius_m = 0.6;
+  show.stage.blocked = cells_in(show.stage.grid, "F6:F6");
+  const auto at = [&](int column, int row) { return show.stage.grid.index({column, row}); };
+  show.sections.push_back(section_of("start", CellsSource{"start.csv", {at(1, 4)}}, 1, 0, 0, 31));
+  show.sections.push_back(section_of("on", CellsSource{"on.csv", {at(9, 4)}}, 33, 0, 0, 34));
+  const auto planned = plan_show(show, {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  for (const Mark& mark : planned->plan.tracks[0]) {
+    EXPECT_GT(distance(show.stage.grid.centre(mark.cell), show.stage.grid.centre(at(5, 5))), 1.05);
+  }
+}
+
 TEST(PlanShow, RefusesNamedPeopleWhoWouldMeet) {
   Show show = show_with(2, GridKind::square, 12, 4);
   const CellIndex left = show.stage.grid.index({1, 1});

@@ -127,6 +127,18 @@ TEST(Validate, LetsPeopleStandBesideABlockedCell) {
   EXPECT_TRUE(validate(plan).valid());
 }
 
+TEST(Validate, KeepsAWideBodyOffABlockedCell) {
+  Plan plan = calm_plan();
+  plan.stage.blocked = {plan.stage.grid.index({5, 2})};
+  plan.radius_m.assign(plan.performers.size(), 0.0);
+  EXPECT_TRUE(validate(plan).valid());
+  plan.radius_m[1] = 0.6;
+  const Verdict verdict = validate(plan);
+  ASSERT_FALSE(verdict.valid());
+  EXPECT_EQ(verdict.first.front().kind, Kind::into_blocked);
+  EXPECT_DOUBLE_EQ(verdict.first.front().limit, 0.6);
+}
+
 TEST(Validate, FindsAWalkPastTheCornerOfABlockedCell) {
   const Grid grid = squares();
   Plan plan = plan_of(grid, {{mark_at(0, grid, 0, 0), mark_at(9, grid, 2, 1)}});
