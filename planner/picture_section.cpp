@@ -14,6 +14,7 @@
 #include "planner/formation/sampling.hpp"
 #include "planner/joint/joint_plan.hpp"
 #include "planner/parallel.hpp"
+#include "planner/schedule/walks.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -111,15 +112,19 @@ class PictureSection {
     take(std::move(*joint), plan);
   }
 
+  /// Whether everybody gets there in time and clear of each other.
   [[nodiscard]] bool can_walk(const std::vector<CellIndex>& from, const std::vector<CellIndex>& to,
                               Duration time) const {
+    const double longest_m = section_speed(show_, section_) * to_seconds(time) - kRounding_m;
+    if (ways_.open()) {
+      const Leg leg = settle({&ways_, from, to, longest_m, show_.stage.clearance_m});
+      return leg.walkable && leg.conflicts.empty();
+    }
     std::vector<Point> sources;
     std::vector<Point> targets;
     for (const CellIndex cell : from) sources.push_back(grid_.centre(cell));
     for (const CellIndex cell : to) targets.push_back(grid_.centre(cell));
-    const double share = ways_.open() ? 1 : kAroundBlocked;
-    const double longest_m = share * section_speed(show_, section_) * to_seconds(time) - kRounding_m;
-    return longest_m > 0 && assign(sources, targets, WalkCost::squared, longest_m).has_value();
+    return longest_m > 0 && assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
   }
 
   void take(JointPlan joint, SectionPlan& plan) const {
