@@ -72,7 +72,8 @@ Result<config::LoadedShow> read_show(Session& session, const std::string& file) 
   return std::move(loaded).value();
 }
 
-Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
+Result<Films> decode_films(Session& session, config::LoadedShow& loaded,
+                           const std::vector<std::optional<config::FilmLength>>& known) {
   Show& show = loaded.show;
   Films films(show.sections.size());
   std::vector<std::optional<config::FilmLength>> lengths(show.sections.size());
@@ -80,6 +81,10 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded) {
   std::vector<Diagnostic> empty;
   for (std::size_t i = 0; i < show.sections.size(); ++i) {
     const Section& section = show.sections[i];
+    if (i < known.size() && known[i]) {
+      lengths[i] = known[i];
+      continue;
+    }
     session.tell("decoding", static_cast<double>(i) / static_cast<double>(show.sections.size()));
     auto film = decode(session, section);
     if (!film) continue;

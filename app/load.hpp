@@ -21,7 +21,9 @@ using Films = std::vector<std::optional<Film>>;
 
 /// Decodes every section's film, gives a video without a duration its own length, and looks again whether sections
 /// overlap. All that is wrong is reported at once, each at its section.
-[[nodiscard]] Result<Films> decode_films(Session& session, config::LoadedShow& loaded);
+/// @param known  lengths of films that nobody needs to decode; empty: none
+[[nodiscard]] Result<Films> decode_films(Session& session, config::LoadedShow& loaded,
+                                         const std::vector<std::optional<config::FilmLength>>& known = {});
 
 /// Refuses an output that would overwrite a file that the show reads.
 [[nodiscard]] Status<> spare_inputs(const config::LoadedShow& loaded, const std::string& output);

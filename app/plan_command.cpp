@@ -89,14 +89,21 @@ int run(Session& session, const Options& options) {
   const SteadyClock clock;
   if (options.timing) session.time_stages(clock);
   session.enter("reading");
-  auto planned = plan_anew(session, options.choice);
+  const std::string file = options.output.empty() ? plan_file_beside(options.choice.show) : options.output;
+  PlanChoice choice = options.choice;
+  choice.stages = stage_file_beside(file);
+  auto planned = plan_anew(session, choice, !options.pictures.empty());
   if (!planned) return session.fail(planned.error());
   const auto refused = refusal_of(planned->planned);
-  const std::string file = options.output.empty() ? plan_file_beside(options.choice.show) : options.output;
-  if (auto spared = spare_inputs(planned->loaded, file); !spared) return session.fail(spared.error());
+  for (const std::string& output : {file, choice.stages}) {
+    if (auto spared = spare_inputs(planned->loaded, output); !spared) return session.fail(spared.error());
+  }
   session.enter("writing");
   if (!refused) {
     if (auto done = config::save_plan(planned->plan(), file); !done) return session.fail(done.error());
+    if (auto kept = planned->keep_stages(); !kept) {
+      session.note(fmt::format("the next planning will begin from nothing: {}", kept.error().message));
+    }
   }
   // Pictures of a refused plan help to see why; they say so themselves.
   if (!options.pictures.empty()) {
@@ -120,6 +127,8 @@ void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("SHOW", options->choice.show, "the show file (YAML)")->required();
   command->add_option("-o,--output", options->output, "the plan file to write (default: SHOW.plan beside the show)");
   command->add_option("--pictures", options->pictures, "draw a picture of every key formation into this folder");
+  command->add_flag("--afresh", options->choice.afresh,
+                    "plan everything anew, whatever is kept of earlier plannings (the plan is the same)");
   command
       ->add_option("--threads", options->choice.threads,
                    "plan with so many threads (the plan is the same for any number)")
@@ -128,7 +137,10 @@ void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
   session.add_options(*command, true);
   command->footer(
       "A plan that somebody could not walk, or in which people would come too close, is refused with who, where and\n"
-      "when (exit status 3), and no plan file is written.\n\n"
+      "when (exit status 3), and no plan file is written.\n"
+      "What each stage of planning gave is kept beside the plan file (.stages): after a change only what depends on "
+      "it\n"
+      "is planned again.\n\n"
       "Examples:\n  footlight plan show.yaml\n  footlight plan show.yaml --pictures out/show\n"
       "  footlight plan show.yaml -o monday.plan --json\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });

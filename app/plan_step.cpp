@@ -2,12 +2,14 @@
 #include "app/plan_step.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "app/stage_file.hpp"
 #include "config/plan_file.hpp"
 #include "core/clock.hpp"
 #include "planner/validate.hpp"
@@ -17,25 +19,120 @@ namespace {
 
 Error interrupted() { return {ErrorKind::interrupted, "interrupted; nothing was written"}; }
 
-/// Decodes what is not decoded yet, and plans.
-Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, int threads) {
+/// What earlier plannings left, and what the show's films are called there.
+class Kept {
+ public:
+  Kept(Session& session, const PlanChoice& choice, const config::LoadedShow& loaded)
+      : file_(choice.stages), loaded_(loaded) {
+    std::error_code error;
+    if (file_.empty() || build_id().empty()) return;
+    reuse_.stages = &stages_;
+    if (!choice.afresh && std::filesystem::exists(file_, error)) {
+      const auto done = load_stages(file_, stages_);
+      if (!done) session.note(fmt::format("planning everything anew: '{}': {}", file_, done.error().message));
+      had_any_ = done.has_value();
+    }
+    for (const Section& section : loaded.show.sections) reuse_.film_ids.push_back(film_id(section));
+  }
+
+  [[nodiscard]] const planner::Reuse& reuse() const { return reuse_; }
+  [[nodiscard]] bool had_any() const { return had_any_; }
+
+  /// Lengths of the films that need not be decoded.
+  [[nodiscard]] std::vector<std::optional<config::FilmLength>> lengths() {
+    std::vector<std::optional<config::FilmLength>> out(loaded_.show.sections.size());
+    for (std::size_t i = 0; i < reuse_.film_ids.size(); ++i) {
+      if (reuse_.film_ids[i].empty()) continue;
+      const auto bytes = stages_.find(length_key(i));
+      if (!bytes) continue;
+      planner::StageReader reader(*bytes);
+      const config::FilmLength length{reader.get<int>(), reader.get<double>()};
+      if (reader.whole()) out[i] = length;
+    }
+    Show show = loaded_.show;
+    if (!config::settle_film_lengths(show, out)) return {};
+    const std::vector<bool> known = planner::formations_known(show, reuse_);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (!known[i]) out[i].reset();
+    }
+    return out;
+  }
+
+  void keep_lengths(const Films& films) {
+    if (reuse_.stages == nullptr) return;
+    for (std::size_t i = 0; i < films.size(); ++i) {
+      if (!films[i] || reuse_.film_ids[i].empty()) continue;
+      planner::StageWriter out;
+      out.add(static_cast<int>(films[i]->frames.size())).add(films[i]->fps);
+      stages_.keep(length_key(i), out.take());
+    }
+  }
+
+  Status<> save() const { return reuse_.stages == nullptr ? Status<>(Done{}) : save_stages(stages_, file_); }
+
+ private:
+  [[nodiscard]] planner::StageKey length_key(std::size_t section) const {
+    return planner::StageHash("film length").add(std::string_view(reuse_.film_ids[section])).key();
+  }
+
+  /// The film's bytes and how they are read; empty for what is no film or cannot be read.
+  static std::string film_id(const Section& section) {
+    const auto* video = std::get_if<VideoSource>(&section.from);
+    const auto* image = std::get_if<ImageSource>(&section.from);
+    if (video == nullptr && image == nullptr) return {};
+    const std::string& path = video != nullptr ? video->path : image->path;
+    const PictureOptions& picture = video != nullptr ? video->picture : image->picture;
+    const auto content = config::hash_files(std::span(&path, 1));
+    if (!content) return {};
+    return fmt::format("{} {} {} {} {} {}", *content, video != nullptr, video != nullptr ? video->first_frame : 0,
+                       video != nullptr ? video->last_frame.value_or(-1) : -1, picture.threshold.value_or(-1),
+                       picture.invert);
+  }
+
+  std::string file_;
+  const config::LoadedShow& loaded_;
+  planner::Stages stages_;
+  planner::Reuse reuse_;
+  bool had_any_ = false;
+};
+
+/// What was planned anew, where something was kept.
+std::string anew_text(const planner::Planned& planned) {
+  const auto of = [](const planner::Planned::Anew& stage, const char* what) {
+    return fmt::format("{} of {} {}", stage.anew, stage.all, what);
+  };
+  return fmt::format("re-planned {} ({}, {}, {})", of(planned.facts, "transitions"),
+                     of(planned.formations, "sections' formations"), of(planned.pairings, "pairings"),
+                     of(planned.walks, "walks"));
+}
+
+/// Decodes what is needed, and plans.
+Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, const PlanChoice& choice,
+                  bool want_films) {
+  const auto kept_before = std::make_shared<Kept>(session, choice, out.loaded);
+  Kept& kept = *kept_before;
   if (!out.films) {
-    auto films = decode_films(session, out.loaded);
+    auto films = decode_films(session, out.loaded, want_films ? decltype(kept.lengths()){} : kept.lengths());
     if (!films) return std::move(films).error();
     out.films = std::move(films).value();
   }
   std::optional<tbb::global_control> limit;
-  if (threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  if (choice.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(choice.threads));
   }
   const SteadyClock clock;
-  auto planned = planner::plan_show(out.loaded.show, *out.films, session.progress());
+  auto planned = planner::plan_show(out.loaded.show, *out.films, session.progress(), kept.reuse());
   out.planning = clock.now().time_since_epoch();
   session.clear_line();
   if (!planned) return std::move(planned).error();
   if (session.stopped()) return interrupted();
   out.planned = std::move(planned).value();
   out.planned.plan.show_hash = hash;
+  if (kept.had_any()) {
+    session.note(fmt::format("{} in {:.0f} ms", anew_text(out.planned), 1000 * to_seconds(*out.planning)));
+  }
+  kept.keep_lengths(*out.films);
+  out.keep_stages = [kept_before] { return kept_before->save(); };
   return Done{};
 }
 
@@ -94,16 +191,20 @@ void PlanChoice::add_options(CLI::App& command) {
       ->check(CLI::Range(1, 1024));
 }
 
+std::string stage_file_beside(const std::string& plan_file) {
+  return std::filesystem::path(plan_file).replace_extension(".stages").string();
+}
+
 std::string plan_file_beside(const std::string& show_file) {
   return std::filesystem::path(show_file).replace_extension(".plan").string();
 }
 
-Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice) {
+Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice, bool want_films) {
   auto out = read(session, choice);
   if (!out) return out;
   const auto hash = config::hash_files(out->loaded.planned_files);
   if (!hash) return hash.error();
-  if (auto done = plan_now(session, *out, *hash, choice.threads); !done) return std::move(done).error();
+  if (auto done = plan_now(session, *out, *hash, choice, want_films); !done) return std::move(done).error();
   return out;
 }
 
@@ -126,7 +227,7 @@ Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool wa
     session.clear_line();
     return out;
   }
-  if (auto done = plan_now(session, *out, *hash, choice.threads); !done) return std::move(done).error();
+  if (auto done = plan_now(session, *out, *hash, choice, want_films); !done) return std::move(done).error();
   return out;
 }
 

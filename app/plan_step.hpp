@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,9 +20,11 @@ namespace footlight::app {
 
 /// Where a command takes its plan from.
 struct PlanChoice {
-  std::string show;  ///< the show file
-  std::string plan;  ///< a plan file that must be of this show; empty: the one beside the show where it fits
-  int threads = 0;   ///< 0: as many as there are processors
+  std::string show;     ///< the show file
+  std::string plan;     ///< a plan file that must be of this show; empty: the one beside the show where it fits
+  int threads = 0;      ///< 0: as many as there are processors
+  bool afresh = false;  ///< take nothing from `stages`
+  std::string stages;   ///< file of what earlier plannings gave, used where they fit; empty: none
   /// A plan file that the user named may break its limits: it is taken, and marked as not valid.
   bool unchecked = false;
 
@@ -32,9 +35,10 @@ struct PlanChoice {
 /// A show and its plan.
 struct PlannedShow {
   config::LoadedShow loaded;
-  std::optional<Films> films;        ///< absent when the plan came from a file and nobody asked for them
-  planner::Planned planned;          ///< `shortest` is empty when the plan came from a file
-  std::optional<Duration> planning;  ///< that planning took, decoding apart; absent when the plan came from a file
+  std::optional<Films> films;             ///< absent when the plan came from a file and nobody asked for them
+  planner::Planned planned;               ///< `shortest` is empty when the plan came from a file
+  std::optional<Duration> planning;       ///< that planning took, decoding apart; absent when the plan came from a file
+  std::function<Status<>()> keep_stages;  ///< writes the stages of this planning for the next; empty: not planned now
   [[nodiscard]] const Plan& plan() const { return planned.plan; }
 };
 
@@ -46,8 +50,12 @@ struct PlannedShow {
 /// its media or the plan file have wrong; interrupted.
 [[nodiscard]] Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool want_films);
 
-/// Reads and plans, whatever plan files there are.
-[[nodiscard]] Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice);
+/// "shows/vine/show.stages" for "shows/vine/show.plan".
+[[nodiscard]] std::string stage_file_beside(const std::string& plan_file);
+
+/// Reads and plans, whatever plan files there are. With `choice.stages` only what depends on a change is planned, films
+/// whose formations are known are not decoded (unless wanted), and `keep_stages` writes the file for the next time.
+[[nodiscard]] Result<PlannedShow> plan_anew(Session& session, const PlanChoice& choice, bool want_films = false);
 
 /// A plan file on its own, judged: a plan that breaks its limits is marked as not valid.
 [[nodiscard]] Result<Plan> plan_alone(const std::string& file);

@@ -10,9 +10,10 @@
 #include "planner/by_hand.hpp"
 #include "planner/parallel.hpp"
 #include "planner/plan_section.hpp"
+#include "planner/proof.hpp"
 #include "planner/refusal.hpp"
-#include "planner/repair/closest_approach.hpp"
 #include "planner/schedule/chain.hpp"
+#include "planner/section_stage.hpp"
 #include "planner/shortest.hpp"
 #include "planner/validate.hpp"
 
@@ -26,8 +27,14 @@ Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 
 class ShowPlanner {
  public:
-  ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress)
-      : show_(show), films_(films), progress_(progress), limits_(show), clearance_m_(show.stage.clearance_m) {
+  ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress,
+              const Reuse& reuse)
+      : show_(show),
+        films_(films),
+        progress_(progress),
+        reuse_(reuse),
+        limits_(show),
+        clearance_m_(show.stage.clearance_m) {
     for (std::size_t p = 0; p < show.performers.size(); ++p) {
       const auto radius_m = [&](PerformerIndex who) { return show.performers[who.at()].radius_m; };
       const PerformerIndex who = PerformerIndex::of(p);
@@ -56,7 +63,7 @@ class ShowPlanner {
     std::optional<Chain> chain;
     for (;;) {
       if (auto error = collect_stations(ways)) return *error;
-      chain = walk_through({&limits_, &ways, &stations_, clearance_m_}, progress_);
+      chain = walk_through({&limits_, &ways, &stations_, clearance_m_, reuse_.stages, &counts_}, progress_);
       if (!chain) return interrupted();
       name_people(*chain);
       if (!slow || give_slow_people_slow_tracks(*chain) || slow_for_all_) break;
@@ -74,19 +81,27 @@ class ShowPlanner {
       planned_.plan.sections.front().notes.push_back(
           "everybody walks as slowly as the slowest: no tracks are slow enough for those with limits of their own");
     }
-    if (!write_facts(*chain)) return interrupted();
+    const auto sound = prove(*chain, planned_.plan, reuse_.stages, &facts_, progress_);
+    if (!sound) return interrupted();
     note_lag();
     note_waits(*chain);
     progress_.tell("validate", 0);
-    const Verdict verdict = validate(planned_.plan);
-    planned_.plan.valid = verdict.valid();
-    planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
+    planned_.plan.valid = *sound;
+    if (!*sound) {
+      const Verdict verdict = validate(planned_.plan);
+      planned_.plan.valid = verdict.valid();
+      planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
+    }
     if (!planned_.plan.valid && widest_two_m() > show_.stage.grid.pitch_m()) {
       planned_.refusal.insert(planned_.refusal.begin(), too_wide());
     }
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       planned_.shortest.push_back(shortest_duration(limits_, *chain, SectionIndex::of(s), planned_.plan));
     }
+    planned_.formations = {sections_.all, sections_.anew};
+    planned_.pairings = {counts_.pairings.all, counts_.pairings.anew};
+    planned_.walks = {counts_.walks.all, counts_.walks.anew};
+    planned_.facts = {facts_.all, facts_.anew};
     progress_.tell("validate", 1);
     if (progress_.stopped()) return interrupted();
     return std::move(planned_);
@@ -95,8 +110,7 @@ class ShowPlanner {
  private:
   std::optional<Error> collect_stations(const Ways& ways) {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      auto section = plan_section(limits_, SectionIndex::of(s), films_[s], ways,
-                                  stations_.empty() ? nullptr : &stations_.back(), progress_);
+      auto section = recalled_section(SectionIndex::of(s), ways);
       if (!section) return section.error();
       if (auto error = apply_overrides(show_, SectionIndex::of(s), ways, *section)) return error;
       for (Station& station : section->stations) {
@@ -106,6 +120,27 @@ class ShowPlanner {
       planned_.plan.sections.push_back(std::move(section->section));
     }
     return std::nullopt;
+  }
+
+  /// Formations of a section that were planned before, without the film; else anew.
+  Result<SectionPlan> recalled_section(SectionIndex index, const Ways& ways) {
+    const std::size_t s = index.at();
+    const bool known = reuse_.stages != nullptr && s < reuse_.film_ids.size() && !reuse_.film_ids[s].empty();
+    const Station* before = stations_.empty() ? nullptr : &stations_.back();
+    StageKey key{};
+    ++sections_.all;
+    if (known) {
+      key = section_key(limits_, index, reuse_.film_ids[s], before);
+      if (const auto bytes = reuse_.stages->find(key)) {
+        StageReader reader(*bytes);
+        SectionPlan plan = decode_section(reader, index);
+        if (reader.whole()) return plan;
+      }
+    }
+    ++sections_.anew;
+    auto section = plan_section(limits_, index, films_[s], ways, before, progress_);
+    if (section && known) reuse_.stages->keep(key, encode_section(*section));
+    return section;
   }
 
   /// A section that begins when the one before ends has no time to walk: a film takes people as they stand, anything
@@ -377,42 +412,13 @@ class ShowPlanner {
     }
   }
 
-  bool write_facts(const Chain& chain) {
-    Plan& plan = planned_.plan;
-    plan.transitions.resize(chain.legs.size());
-    return for_each_index(chain.legs.size(), "facts", progress_, [&](std::size_t k) {
-      std::vector<Walk> walks(show_.performers.size());
-      TransitionFacts& facts = plan.transitions[k];
-      facts.start = chain.stops[k].depart;
-      facts.end = chain.stops[k + 1].arrive;
-      for (std::size_t p = 0; p < walks.size(); ++p) {
-        walks[p] = {show_.stage.grid.centre(cell_of(chain, k, p)), show_.stage.grid.centre(cell_of(chain, k + 1, p))};
-        const double walk_m = distance(walks[p].from, walks[p].to);
-        if (walk_m > facts.longest_walk_m) {
-          facts.longest_walk_m = walk_m;
-          facts.longest_walker = PerformerIndex::of(p);
-        }
-      }
-      if (chain.legs[k].timing.empty()) {
-        const NearPair nearest = nearest_pair(walks);
-        facts.clearance_m = nearest.approach.distance_m;
-        facts.closest_a = PerformerIndex(nearest.a);
-        facts.closest_b = PerformerIndex(nearest.b);
-        facts.closest_at = facts.start + seconds(nearest.approach.share * to_seconds(facts.end - facts.start));
-      } else {
-        const ClosestApproach nearest = closest_approach(plan, facts.start, facts.end);
-        facts.clearance_m = nearest.distance_m;
-        facts.closest_a = nearest.a;
-        facts.closest_b = nearest.b;
-        facts.closest_at = nearest.at;
-      }
-      facts.tolerated_lag_s = tolerated_lag_s(plan, facts.start, facts.end);
-    });
-  }
-
   const Show& show_;
   const std::vector<std::optional<Film>>& films_;
   const Progress& progress_;
+  const Reuse& reuse_;
+  StageCount sections_;
+  ChainTask::Counts counts_;
+  StageCount facts_;
   Show limits_;  ///< with the limits of speed that the walks are planned for
   bool slow_for_all_ = false;
   double clearance_m_;
@@ -425,8 +431,26 @@ class ShowPlanner {
 
 }  // namespace
 
-Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress) {
-  return ShowPlanner(show, films, progress).run();
+Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress,
+                          const Reuse& reuse) {
+  auto planned = ShowPlanner(show, films, progress, reuse).run();
+  if (planned && reuse.stages != nullptr) reuse.stages->forget_unused();
+  return planned;
+}
+
+std::vector<bool> formations_known(const Show& show, const Reuse& reuse) {
+  Show limits = show;
+  for (Performer& performer : limits.performers) performer.max_speed_mps = 0;
+  std::vector<bool> known;
+  for (std::size_t s = 0; s < show.sections.size(); ++s) {
+    const bool asked = reuse.stages != nullptr && s < reuse.film_ids.size() && !reuse.film_ids[s].empty();
+    const auto found = [&](const Show& one) {
+      return reuse.stages->find(section_key(one, SectionIndex::of(s), reuse.film_ids[s], nullptr)).has_value();
+    };
+    // With limits of people's own everything may have to be planned for the slowest.
+    known.push_back(asked && found(limits) && found(show));
+  }
+  return known;
 }
 
 }  // namespace footlight::planner

@@ -10,6 +10,7 @@
 #include "core/result.hpp"
 #include "core/show.hpp"
 #include "planner/progress.hpp"
+#include "planner/stages.hpp"
 
 namespace footlight::planner {
 
@@ -30,12 +31,33 @@ struct Planned {
     std::string limited_by;
   };
   std::vector<std::optional<Shortest>> shortest;
+  /// How many stages there are of a kind, and how many of them were planned anew.
+  struct Anew {
+    std::size_t all = 0;
+    std::size_t anew = 0;
+  };
+  Anew formations;  ///< of a section, without what is changed by hand
+  Anew pairings;    ///< of two formations
+  Anew walks;       ///< of everybody from instant to instant
+  Anew facts;       ///< of a transition, and its proof
 };
 
-/// @param films one for each section, absent for explicit cells
+/// What an earlier planning leaves for the next. Every stage (the formations of a section, the pairing of a transition,
+/// the walks of an interval, its facts and proof) is known by the hash of all that it depends on: the plan is the one
+/// made without, byte for byte.
+struct Reuse {
+  Stages* stages = nullptr;  ///< in: of earlier plannings; out: of this one alone
+  std::vector<std::string>
+      film_ids;  ///< for each section: names the film's bytes and how they are read; empty: unknown
+};
+
+/// @param films one for each section, absent for explicit cells and where the formations are known
 /// @return ErrorKind::input when there is nothing to plan (more people than cells, positioned), interrupted when told
 /// to stop Complexity: see docs/algorithms/. Deterministic, byte-equal for any number of threads. Thread: reentrant.
 [[nodiscard]] Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film>>& films,
-                                        const Progress& progress = {});
+                                        const Progress& progress = {}, const Reuse& reuse = {});
+
+/// For each section whether its formations are among the stages, so that `plan_show` does not ask for its film.
+[[nodiscard]] std::vector<bool> formations_known(const Show& show, const Reuse& reuse);
 
 }  // namespace footlight::planner

@@ -37,6 +37,8 @@ std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain
   if (asked.planner.model == PlannerModel::joint && film && film->show_fps > 0) return std::nullopt;
   const Grid& grid = show.stage.grid;
   const double speed = section_speed(show, asked);
+  std::vector<char> waits(static_cast<std::size_t>(grid.size()), 0);
+  for (const CellIndex cell : show.stage.reserve) waits[cell.at()] = 1;
   Tightest tightest;
   std::vector<std::size_t> last;  // for each slot the stop from which the way to the next place in the picture begins
   for (std::size_t k = 0; k < chain.stops.size(); ++k) {
@@ -50,7 +52,7 @@ std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain
       return chain.stops[j].exact ? chain.stops[j].cells : chain.stops[j].own;
     };
     for (std::size_t i = 0; i < stop.own.size(); ++i) {
-      if (std::binary_search(show.stage.reserve.begin(), show.stage.reserve.end(), stop.own[i])) continue;
+      if (waits[stop.own[i].at()] != 0) continue;
       const Stop& begin = chain.stops[last[i]];
       const double walk_m = distance(grid.centre(from_cells(last[i])[i]), grid.centre(stop.own[i]));
       const double factor = walk_m / (speed * to_seconds(stop.arrive - begin.depart));

@@ -25,6 +25,11 @@ void Stages::keep(const StageKey& key, std::string value) {
   entries_.insert_or_assign(key, Entry{std::move(value), true});
 }
 
+void Stages::load(const StageKey& key, std::string_view value) {
+  const std::lock_guard lock(mutex_);
+  entries_.insert_or_assign(key, Entry{std::string(value), false});
+}
+
 void Stages::forget_unused() {
   const std::lock_guard lock(mutex_);
   for (auto entry = entries_.begin(); entry != entries_.end();) {

@@ -106,10 +106,19 @@ class StageReader {
     take(values.data(), values.size() * sizeof(T));
     return values;
   }
-  std::string text() {
-    const auto chars = list<char>();
-    return {chars.begin(), chars.end()};
+  /// A text where it stands.
+  std::string_view view() {
+    const auto size = get<std::uint64_t>();
+    if (failed_ || size > rest_.size()) {
+      failed_ = true;
+      return {};
+    }
+    const std::string_view out = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return out;
   }
+  std::string text() { return std::string(view()); }
+  [[nodiscard]] bool failed() const { return failed_; }
   /// Whether everything was there, and nothing else.
   [[nodiscard]] bool whole() const { return !failed_ && rest_.empty(); }
 
@@ -135,6 +144,8 @@ class Stages {
   /// What a stage gave; nothing when it has not been planned with these inputs. Valid until `forget_unused`.
   [[nodiscard]] std::optional<std::string_view> find(const StageKey& key);
   void keep(const StageKey& key, std::string value);
+  /// From a file; not used yet.
+  void load(const StageKey& key, std::string_view value);
   /// Leaves only what was found or kept since this was called last.
   void forget_unused();
 

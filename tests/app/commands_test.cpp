@@ -148,9 +148,37 @@ TEST_F(StarterShow, PlansIntoAFileBesideTheShow) {
   EXPECT_THAT(ran.out, HasSubstr("\nring "));
   Names expected = as_made_;
   expected.push_back("show.plan");
+  expected.push_back("show.stages");
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(files(), expected);
   EXPECT_EQ(footlight({"plan", show_, "--quiet"}).err, "");
+}
+
+TEST_F(StarterShow, AfterAChangeOnlyWhatDependsOnItIsPlannedAgain) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const std::string before = folder_.read("s/show.plan");
+  const Ran same = footlight({"plan", show_});
+  EXPECT_THAT(same.err, HasSubstr("re-planned 0 of "));
+  EXPECT_EQ(folder_.read("s/show.plan"), before);
+  replace("pitch: 1 m", "pitch: 1.1 m");
+  const Ran other = footlight({"plan", show_});
+  EXPECT_THAT(other.err, Not(HasSubstr("re-planned 0 of ")));
+  const std::string reused = folder_.read("s/show.plan");
+  const Ran afresh = footlight({"plan", show_, "--afresh"});
+  EXPECT_THAT(afresh.err, Not(HasSubstr("re-planned")));
+  EXPECT_EQ(folder_.read("s/show.plan"), reused);
+}
+
+TEST_F(StarterShow, HarmedStagesAreNotUsed) {
+  ASSERT_EQ(footlight({"plan", show_}).status, 0);
+  const std::string before = folder_.read("s/show.plan");
+  std::string stages = folder_.read("s/show.stages");
+  stages[stages.size() / 2] ^= 1;
+  folder_.write("s/show.stages", stages);
+  const Ran ran = footlight({"plan", show_});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_THAT(ran.err, HasSubstr("planning everything anew: '" + folder_ / "s/show.stages" + "': it is harmed\n"));
+  EXPECT_EQ(folder_.read("s/show.plan"), before);
 }
 
 TEST_F(StarterShow, ThePlanIsTheSameForAnyNumberOfThreads) {

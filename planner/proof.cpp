@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/proof.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "planner/parallel.hpp"
+#include "planner/repair/closest_approach.hpp"
+#include "planner/validate.hpp"
+
+namespace footlight::planner {
+namespace {
+
+/// As far as `tolerated_lag_s` looks.
+constexpr Duration kLag = milliseconds(2000);
+
+/// What is known of one transition; people by the order of their cells at its start.
+struct Proof {
+  double clearance_m = 0;
+  std::uint32_t closest_a = 0;
+  std::uint32_t closest_b = 0;
+  double closest_share = 0;
+  double longest_walk_m = 0;
+  std::uint32_t longest_walker = 0;
+  double tolerated_lag_s = 0;
+  bool sound = true;
+};
+
+std::string encoded(const Proof& proof) {
+  StageWriter out;
+  out.add(proof.clearance_m).add(proof.closest_a).add(proof.closest_b).add(proof.closest_share);
+  return out.add(proof.longest_walk_m).add(proof.longest_walker).add(proof.tolerated_lag_s).add(proof.sound).take();
+}
+
+Proof decoded(StageReader& reader) {
+  Proof proof;
+  proof.clearance_m = reader.get<double>();
+  proof.closest_a = reader.get<std::uint32_t>();
+  proof.closest_b = reader.get<std::uint32_t>();
+  proof.closest_share = reader.get<double>();
+  proof.longest_walk_m = reader.get<double>();
+  proof.longest_walker = reader.get<std::uint32_t>();
+  proof.tolerated_lag_s = reader.get<double>();
+  proof.sound = reader.get<bool>();
+  return proof;
+}
+
+/// Where the marks of each instant are in a track; the same for everybody where a plan has no marks of one's own.
+std::size_t first_mark_at(const std::vector<Mark>& track, Instant instant) {
+  const auto at = std::lower_bound(track.begin(), track.end(), instant,
+                                   [](const Mark& mark, Instant time) { return mark.time < time; });
+  return static_cast<std::size_t>(at - track.begin());
+}
+
+class Prover {
+ public:
+  Prover(const Chain& chain, Plan& plan, Stages* stages, StageCount* count)
+      : chain_(chain), plan_(plan), stages_(stages), count_(count) {
+    StageHash limits("limits");
+    limits.add(plan.stage.grid.kind()).add(plan.stage.grid.columns()).add(plan.stage.grid.rows());
+    limits.add(plan.stage.grid.pitch_m()).list(plan.stage.blocked);
+    limits.add(plan.stage.clearance_m).add(plan.stage.max_speed_mps);
+    for (const PlanSection& section : plan.sections) {
+      limits.add(section.start.time_since_epoch().count()).add(section.end.time_since_epoch().count());
+      limits.add(section.max_speed_mps);
+    }
+    limits_ = limits.key();
+    alike_ = std::all_of(plan.radius_m.begin(), plan.radius_m.end(), [](double radius_m) { return radius_m == 0; }) &&
+             std::all_of(plan.max_speed_mps.begin(), plan.max_speed_mps.end(), [](double mps) { return mps == 0; });
+  }
+
+  bool prove_one(std::size_t k) {
+    const Window window = window_of(k);
+    const std::vector<std::uint32_t> order = people_by_cell(window.start);
+    const Proof proof =
+        recall(stages_, key_of(window, order), count_, decoded, encoded, [&] { return look(k, window, order); });
+    TransitionFacts& facts = plan_.transitions[k];
+    facts.start = chain_.stops[k].depart;
+    facts.end = chain_.stops[k + 1].arrive;
+    facts.clearance_m = proof.clearance_m;
+    facts.closest_a = PerformerIndex(order[proof.closest_a]);
+    facts.closest_b = PerformerIndex(order[proof.closest_b]);
+    if (facts.closest_b < facts.closest_a) std::swap(facts.closest_a, facts.closest_b);
+    facts.closest_at = facts.start + seconds(proof.closest_share * to_seconds(facts.end - facts.start));
+    facts.longest_walk_m = proof.longest_walk_m;
+    facts.longest_walker = PerformerIndex(proof.longest_walk_m > 0 ? order[proof.longest_walker] : 0);
+    facts.tolerated_lag_s = proof.tolerated_lag_s;
+    return proof.sound;
+  }
+
+ private:
+  /// The marks on which a transition's facts depend.
+  struct Window {
+    Instant start;   ///< everybody arrives at the stop from which the transition goes
+    Instant end;     ///< at the one to which it goes, or the end of the show
+    Instant beyond;  ///< at least so long after it as lateness is looked at
+  };
+
+  [[nodiscard]] Window window_of(std::size_t k) const {
+    const std::vector<Stop>& stops = chain_.stops;
+    Window window{k == 0 ? plan_.tracks.front().front().time : stops[k].arrive, stops[k + 1].arrive, {}};
+    std::size_t last = k + 1;
+    while (last + 1 < stops.size() && stops[last].arrive < stops[k + 1].arrive + kLag) ++last;
+    window.beyond = last + 1 == stops.size() ? stops[last].depart : stops[last].arrive;
+    if (k + 2 == stops.size()) window.end = stops.back().depart;
+    return window;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> people_by_cell(Instant instant) const {
+    std::vector<std::uint32_t> at(static_cast<std::size_t>(plan_.stage.grid.size()), kNobody);
+    for (std::uint32_t p = 0; p < plan_.tracks.size(); ++p) {
+      const auto& track = plan_.tracks[p];
+      at[track[first_mark_at(track, instant)].cell.at()] = p;
+    }
+    std::vector<std::uint32_t> order;
+    order.reserve(plan_.tracks.size());
+    for (const std::uint32_t p : at) {
+      if (p != kNobody) order.push_back(p);
+    }
+    if (order.size() == plan_.tracks.size()) return order;
+    order.resize(plan_.tracks.size());  // two on one cell: the judge will say so
+    std::iota(order.begin(), order.end(), 0U);
+    return order;
+  }
+
+  [[nodiscard]] StageKey key_of(const Window& window, const std::vector<std::uint32_t>& order) const {
+    StageHash hash("facts");
+    hash.add(limits_).add(window.start.time_since_epoch().count());
+    hash.add(window.end.time_since_epoch().count()).add(window.beyond.time_since_epoch().count());
+    std::vector<Duration::rep> times;
+    std::vector<Duration::rep> first_times;
+    std::vector<CellIndex> cells;
+    cells.reserve(4 * order.size());
+    for (const std::uint32_t p : order) {
+      const auto& track = plan_.tracks[p];
+      times.clear();
+      for (std::size_t m = first_mark_at(track, window.start); m < track.size() && track[m].time <= window.beyond;
+           ++m) {
+        times.push_back(track[m].time.time_since_epoch().count());
+        cells.push_back(track[m].cell);
+      }
+      if (p == order.front()) first_times = times;
+      if (p == order.front() || times != first_times) hash.add(p == order.front() ? 0U : p).list(times);
+    }
+    hash.list(cells);
+    if (!alike_) {
+      for (const std::uint32_t p : order) hash.add(plan_.radius_m[p]).add(plan_.max_speed_mps[p]);
+    }
+    for (const Formation& formation : formations_in(window)) {
+      cells.clear();
+      for (const std::uint32_t p : order) cells.push_back(formation.cells[p]);
+      hash.add(formation.time.time_since_epoch().count()).list(cells);
+    }
+    return hash.key();
+  }
+
+  [[nodiscard]] std::span<const Formation> formations_in(const Window& window) const {
+    const auto earlier = [](const Formation& formation, Instant time) { return formation.time < time; };
+    const auto first = std::lower_bound(plan_.formations.begin(), plan_.formations.end(), window.start, earlier);
+    auto last = first;
+    while (last != plan_.formations.end() && last->time <= window.end) ++last;
+    return {first, last};
+  }
+
+  /// The marks from the window's start to `until`, people in order.
+  [[nodiscard]] Plan cut(const Window& window, Instant until, const std::vector<std::uint32_t>& order) const {
+    Plan piece;
+    piece.stage = plan_.stage;
+    piece.sections = plan_.sections;
+    for (const std::uint32_t p : order) {
+      const auto& track = plan_.tracks[p];
+      auto first = track.begin() + static_cast<std::ptrdiff_t>(first_mark_at(track, window.start));
+      auto last = first;
+      while (last != track.end() && last->time <= until) ++last;
+      piece.tracks.emplace_back(first, last);
+      piece.performers.push_back(plan_.performers[p]);
+      piece.radius_m.push_back(plan_.radius_m[p]);
+      piece.max_speed_mps.push_back(plan_.max_speed_mps[p]);
+    }
+    return piece;
+  }
+
+  [[nodiscard]] Proof look(std::size_t k, const Window& window, const std::vector<std::uint32_t>& order) const {
+    Proof proof;
+    Plan piece = cut(window, window.beyond, order);
+    const Grid& grid = plan_.stage.grid;
+    std::vector<Walk> walks;
+    for (std::uint32_t n = 0; n < order.size(); ++n) {
+      walks.push_back({position_at(grid, piece.tracks[n], chain_.stops[k].depart),
+                       position_at(grid, piece.tracks[n], chain_.stops[k + 1].arrive)});
+      const double walk_m = distance(walks.back().from, walks.back().to);
+      if (walk_m <= proof.longest_walk_m) continue;
+      proof.longest_walk_m = walk_m;
+      proof.longest_walker = n;
+    }
+    const NearPair nearest = nearest_pair(walks);
+    proof.clearance_m = nearest.approach.distance_m;
+    proof.closest_a = nearest.a;
+    proof.closest_b = nearest.b;
+    proof.closest_share = nearest.approach.share;
+    proof.tolerated_lag_s = tolerated_lag_s(piece, chain_.stops[k].depart, chain_.stops[k + 1].arrive);
+    piece = cut(window, window.end, order);
+    for (const Formation& formation : formations_in(window)) {
+      Formation ordered = formation;
+      for (std::size_t n = 0; n < order.size(); ++n) ordered.cells[n] = formation.cells[order[n]];
+      piece.formations.push_back(std::move(ordered));
+    }
+    proof.sound = validate(piece).valid();
+    return proof;
+  }
+
+  static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
+  const Chain& chain_;
+  Plan& plan_;
+  Stages* stages_;
+  StageCount* count_;
+  StageKey limits_{};
+  bool alike_ = true;  ///< nobody has a radius or a speed of her own
+};
+
+}  // namespace
+
+std::optional<bool> prove(const Chain& chain, Plan& plan, Stages* stages, StageCount* count, const Progress& progress) {
+  plan.transitions.resize(chain.legs.size());
+  if (chain.legs.empty()) return validate(plan).valid();
+  Prover prover(chain, plan, stages, count);
+  std::vector<char> sound(chain.legs.size(), 0);
+  const bool done = for_each_index(chain.legs.size(), "facts", progress,
+                                   [&](std::size_t k) { sound[k] = prover.prove_one(k) ? 1 : 0; });
+  if (!done) return std::nullopt;
+  return std::all_of(sound.begin(), sound.end(), [](char flag) { return flag != 0; });
+}
+
+}  // namespace footlight::planner
