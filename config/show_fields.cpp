@@ -262,7 +262,9 @@ const Listing& planner_listing() {
 const Listing& override_listing() {
   static const Listing kListing{
       "sections[].overrides[]",
-      "What the director changes by hand in one formation, all at once. It becomes exact, and a key formation.",
+      "What the director changes by hand in one formation, all at once. It becomes a key formation, and gives way "
+      "where "
+      "walking takes too long unless `keys` names it.",
       {
           {.key = "at", .type = Type::at_count, .doc = "The formation at this count.", .range = {1, kMost}},
           {.key = "formation",

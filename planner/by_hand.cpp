@@ -37,7 +37,6 @@ class Hand {
     if (error_) return error_;
     station_.in_picture += on_floor() - before;
     station_.moved += static_cast<int>(override_.move.size() + std::max(override_.add.size(), override_.remove.size()));
-    station_.exact = true;
     station_.key = true;
     return std::nullopt;
   }
@@ -62,7 +61,8 @@ class Hand {
     const std::uint32_t who = who_[cell.at()];
     if (who == kNobody) {
       fail(position, fmt::format("nobody stands on {} {}", name(cell), when()),
-           "footlight export --csv lists who stands where");
+           station_.exact ? "footlight export --csv lists who stands where"
+                          : "the formation as drawn is meant; who is late stands elsewhere in the plan");
     }
     who_[cell.at()] = kNobody;
     return who;
