@@ -73,7 +73,7 @@ class Prover {
     const Window window = window_of(k);
     const std::vector<std::uint32_t> order = people_by_cell(window.start);
     const Proof proof =
-        recall(stages_, key_of(window, order), count_, decoded, encoded, [&] { return look(k, window, order); });
+        recall(stages_, key_of(k, window, order), count_, decoded, encoded, [&] { return look(k, window, order); });
     TransitionFacts& facts = plan_.transitions[k];
     facts.start = chain_.stops[k].depart;
     facts.end = chain_.stops[k + 1].arrive;
@@ -123,15 +123,16 @@ class Prover {
     return order;
   }
 
-  [[nodiscard]] StageKey key_of(const Window& window, const std::vector<std::uint32_t>& order) const {
+  [[nodiscard]] StageKey key_of(std::size_t k, const Window& window, const std::vector<std::uint32_t>& order) const {
     StageHash hash("facts");
-    hash.add(limits_).add(window.start.time_since_epoch().count());
+    hash.add(limits_).add(chain_.legs[k].timing.empty()).add(window.start.time_since_epoch().count());
     hash.add(window.end.time_since_epoch().count()).add(window.beyond.time_since_epoch().count());
     std::vector<Duration::rep> times;
     std::vector<Duration::rep> first_times;
     std::vector<CellIndex> cells;
     cells.reserve(4 * order.size());
-    for (const std::uint32_t p : order) {
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const std::uint32_t p = order[n];
       const auto& track = plan_.tracks[p];
       times.clear();
       for (std::size_t m = first_mark_at(track, window.start); m < track.size() && track[m].time <= window.beyond;
@@ -139,8 +140,8 @@ class Prover {
         times.push_back(track[m].time.time_since_epoch().count());
         cells.push_back(track[m].cell);
       }
-      if (p == order.front()) first_times = times;
-      if (p == order.front() || times != first_times) hash.add(p == order.front() ? 0U : p).list(times);
+      if (n == 0) first_times = times;
+      if (n == 0 || times != first_times) hash.add(n).list(times);
     }
     hash.list(cells);
     if (!alike_) {
@@ -172,7 +173,10 @@ class Prover {
       auto first = track.begin() + static_cast<std::ptrdiff_t>(first_mark_at(track, window.start));
       auto last = first;
       while (last != track.end() && last->time <= until) ++last;
-      piece.tracks.emplace_back(first, last);
+      std::vector<Mark>& own = piece.tracks.emplace_back(first, last);
+      // Who came earlier or leaves later than at the cut stands there meanwhile.
+      if (own.empty() || own.front().time > window.start) own.insert(own.begin(), {window.start, first->cell});
+      if (own.back().time < until && last != track.end()) own.push_back({until, own.back().cell});
       piece.performers.push_back(plan_.performers[p]);
       piece.radius_m.push_back(plan_.radius_m[p]);
       piece.max_speed_mps.push_back(plan_.max_speed_mps[p]);
@@ -193,11 +197,21 @@ class Prover {
       proof.longest_walk_m = walk_m;
       proof.longest_walker = n;
     }
-    const NearPair nearest = nearest_pair(walks);
-    proof.clearance_m = nearest.approach.distance_m;
-    proof.closest_a = nearest.a;
-    proof.closest_b = nearest.b;
-    proof.closest_share = nearest.approach.share;
+    if (chain_.legs[k].timing.empty()) {
+      const NearPair nearest = nearest_pair(walks);
+      proof.clearance_m = nearest.approach.distance_m;
+      proof.closest_a = nearest.a;
+      proof.closest_b = nearest.b;
+      proof.closest_share = nearest.approach.share;
+    } else {
+      const Instant start = chain_.stops[k].depart;
+      const Instant end = chain_.stops[k + 1].arrive;
+      const ClosestApproach nearest = closest_approach(piece, start, end);
+      proof.clearance_m = nearest.distance_m;
+      proof.closest_a = nearest.a.value();
+      proof.closest_b = nearest.b.value();
+      proof.closest_share = to_seconds(nearest.at - start) / to_seconds(end - start);
+    }
     proof.tolerated_lag_s = tolerated_lag_s(piece, chain_.stops[k].depart, chain_.stops[k + 1].arrive);
     piece = cut(window, window.end, order);
     for (const Formation& formation : formations_in(window)) {

@@ -11,7 +11,7 @@ namespace footlight::planner {
 /// Fills the facts of every transition of a plan and judges each by `validate`: what one says depends on the marks from
 /// its start until two seconds after its end, which are the stage's key. People are ordered by their cells meanwhile,
 /// so that it does not depend on their names either.
-/// @param plan tracks with marks of everybody at every stop, formations and sections; in: everything else, out:
+/// @param plan tracks in which everybody stands at every stop, formations and sections; in: everything else, out:
 /// transitions  @param stages nothing: everything anew
 /// @return whether every transition is sound, which is what `validate` says of the whole plan; nothing when stopped
 [[nodiscard]] std::optional<bool> prove(const Chain& chain, Plan& plan, Stages* stages, StageCount* count,
