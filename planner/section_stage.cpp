@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner/section_stage.hpp"
 
+#include <algorithm>
+
 #include "core/check.hpp"
 
 namespace footlight::planner {
@@ -27,7 +29,9 @@ StageKey section_key(const Show& show, SectionIndex index, const std::string& fi
   const Stage& stage = show.stage;
   hash.add(stage.grid.kind()).add(stage.grid.columns()).add(stage.grid.rows()).add(stage.grid.pitch_m());
   hash.list(stage.blocked).list(stage.reserve).add(stage.clearance_m).add(show.performers.size());
-  hash.add(section_speed(show, section)).add(section.max_speed_mps.value_or(stage.max_speed_mps));
+  double widest_m = 0;
+  for (const Performer& performer : show.performers) widest_m = std::max(widest_m, performer.radius_m);
+  hash.add(widest_m).add(section_speed(show, section)).add(section.max_speed_mps.value_or(stage.max_speed_mps));
   hash.add(section.start_count).add(section.duration_counts).add(section.hold_counts);
   hash.add(section.sampling.interval.count()).add(section.sampling.hash).add(section.sampling.snap_to_count);
   const PlannerOptions& options = section.planner;
