@@ -63,6 +63,7 @@ class ShowPlanner {
     std::optional<Chain> chain;
     for (;;) {
       if (auto error = collect_stations(ways)) return *error;
+      if (auto error = not_planned()) return *error;
       chain = walk_through({&limits_, &ways, &stations_, clearance_m_, reuse_.stages, &counts_}, progress_);
       if (!chain) return interrupted();
       name_people(*chain);
@@ -118,6 +119,28 @@ class ShowPlanner {
         stations_.push_back(std::move(station));
       }
       planned_.plan.sections.push_back(std::move(section->section));
+    }
+    return std::nullopt;
+  }
+
+  /// What a show may ask for and no plan keeps yet: better refused than left out in silence.
+  [[nodiscard]] std::optional<Error> not_planned() const {
+    const auto refuse = [&](const char* what) {
+      return input_error(show_.file + ": error: " + what + " cannot be planned by this version (leave it out)");
+    };
+    for (const Station& station : stations_) {
+      if (!station.pins.empty()) return refuse("overrides: pin");
+    }
+    for (const Section& section : show_.sections) {
+      const auto* cells = std::get_if<CellsSource>(&section.from);
+      if (!section.regions.empty()) return refuse("sections: regions");
+      if (cells != nullptr && !cells->groups.empty()) return refuse("cells: the column group");
+    }
+    for (const Performer& performer : show_.performers) {
+      if (performer.absent) return refuse("absent");
+    }
+    for (const Group& group : show_.groups) {
+      if (!group.exchange) return refuse("performers.groups: exchange: false");
     }
     return std::nullopt;
   }
