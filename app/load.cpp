@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "config/media.hpp"
+#include "config/nearest.hpp"
 
 namespace footlight::app {
 namespace {
@@ -61,6 +62,34 @@ Diagnostic empty_picture(const Show& show, const Section& section, const Film& f
 std::string without_last_newline(std::string text) {
   if (text.ends_with('\n')) text.pop_back();
   return text;
+}
+
+template <class Gone>
+std::vector<bool> flags_of(std::size_t size, Gone gone) {
+  std::vector<bool> out;
+  for (std::size_t i = 0; i < size; ++i) out.push_back(gone(i));
+  return out;
+}
+
+/// Places of a list without names at which nobody stands, as many as the plan has people too few.
+std::vector<bool> empty_places(const CellsSource& listed, const Plan& plan, std::size_t section) {
+  std::vector<bool> out(listed.cells.size(), false);
+  std::size_t too_many = listed.cells.size() - std::min(listed.cells.size(), plan.performers.size());
+  const auto formation = std::ranges::find_if(
+      plan.formations, [&](const Formation& one) { return one.section == SectionIndex::of(section); });
+  if (formation == plan.formations.end()) return out;
+  for (std::size_t i = 0; i < out.size() && too_many > 0; ++i) {
+    if (std::ranges::find(formation->cells, listed.cells[i]) != formation->cells.end()) continue;
+    out[i] = true;
+    --too_many;
+  }
+  return out;
+}
+
+template <class T>
+void leave_out(std::vector<T>& list, const std::vector<bool>& gone) {
+  std::size_t i = 0;
+  std::erase_if(list, [&](const T&) { return gone[i++]; });
 }
 
 }  // namespace
@@ -124,6 +153,55 @@ void take_durations(Show& show, const Plan& plan) {
     Section& section = show.sections[i];
     if (!needs_own_length(section)) continue;
     section.duration_counts = show.tempo.count_at(plan.sections[i].end) - section.start_count - section.hold_counts;
+  }
+}
+
+Status<> mark_absent(Show& show, const std::vector<std::string>& ids) {
+  std::vector<std::string> known;
+  for (const Performer& performer : show.performers) known.push_back(performer.id);
+  for (const std::string& id : ids) {
+    const auto found = std::ranges::find(known, id);
+    if (found == known.end()) {
+      return input_error(fmt::format("--absent: there is no performer {} ({})", config::in_quotes(id),
+                                     config::suggestion(id, known, "performers")));
+    }
+    show.performers[static_cast<std::size_t>(found - known.begin())].absent = true;
+  }
+  if (!ids.empty() && std::ranges::all_of(show.performers, &Performer::absent)) {
+    return input_error("--absent: nobody is left (somebody has to come)");
+  }
+  return Done{};
+}
+
+void take_people(config::LoadedShow& loaded, const Plan& plan) {
+  Show& show = loaded.show;
+  const std::size_t people = show.performers.size();
+  if (plan.performers.size() == people) return;
+  std::vector<std::optional<PerformerIndex>> now(people);
+  std::size_t next = 0;
+  for (std::size_t p = 0; p < people && next < plan.performers.size(); ++p) {
+    if (show.performers[p].id == plan.performers[next]) now[p] = PerformerIndex::of(next++);
+  }
+  const auto gone = [&](std::size_t p) { return !now[p]; };
+  for (std::size_t s = 0; s < show.sections.size(); ++s) {
+    Section& section = show.sections[s];
+    for (Override& by_hand : section.overrides) {
+      std::erase_if(by_hand.pin, [&](const Override::Pin& pin) { return gone(pin.performer.at()); });
+      for (Override::Pin& pin : by_hand.pin) pin.performer = *now[pin.performer.at()];
+    }
+    auto* listed = std::get_if<CellsSource>(&section.from);
+    if (listed == nullptr) continue;
+    const std::vector<bool> empty = listed->assigned ? flags_of(people, gone) : empty_places(*listed, plan, s);
+    leave_out(listed->cells, empty);
+    leave_out(listed->groups, empty);
+  }
+  leave_out(show.performers, flags_of(people, gone));
+  for (Node& node : loaded.rig.nodes) {
+    for (Channel& channel : node.channels) {
+      if (channel.kind != Channel::Kind::wearable) continue;
+      const auto& wearer = now[channel.performer.at()];
+      channel = wearer ? Channel{Channel::Kind::wearable, {}, *wearer} : Channel{};
+    }
   }
 }
 

@@ -31,4 +31,11 @@ using Films = std::vector<std::optional<Film>>;
 /// Gives videos without a duration the length they have in a plan of this very show, without decoding them.
 void take_durations(Show& show, const Plan& plan);
 
+/// These people do not come either, besides whom the show file says. Errors: an id that nobody has; nobody is left.
+[[nodiscard]] Status<> mark_absent(Show& show, const std::vector<std::string>& ids);
+
+/// Leaves out of the show, and of its rig, whom the plan does without, so that people have the same numbers in both:
+/// who is absent, her own places and pins, her wearable. Lists of cells without names lose places that stay empty.
+void take_people(config::LoadedShow& loaded, const Plan& plan);
+
 }  // namespace footlight::app

@@ -127,6 +127,10 @@ void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("SHOW", options->choice.show, "the show file (YAML)")->required();
   command->add_option("-o,--output", options->output, "the plan file to write (default: SHOW.plan beside the show)");
   command->add_option("--pictures", options->pictures, "draw a picture of every key formation into this folder");
+  command
+      ->add_option("--absent", options->choice.absent,
+                   "who does not come today, besides those of the show file: ids, commas between them")
+      ->delimiter(',');
   command->add_flag("--afresh", options->choice.afresh,
                     "plan everything anew, whatever is kept of earlier plannings (the plan is the same)");
   command

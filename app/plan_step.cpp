@@ -132,6 +132,7 @@ Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, c
     session.note(fmt::format("{} in {:.0f} ms", anew_text(out.planned), 1000 * to_seconds(*out.planning)));
   }
   kept.keep_lengths(*out.films);
+  take_people(out.loaded, out.planned.plan);
   out.keep_stages = [kept_before] { return kept_before->save(); };
   return Done{};
 }
@@ -179,6 +180,7 @@ Result<PlannedShow> read(Session& session, const PlanChoice& choice) {
   if (!loaded) return std::move(loaded).error();
   PlannedShow out;
   out.loaded = std::move(loaded).value();
+  if (auto done = mark_absent(out.loaded.show, choice.absent); !done) return std::move(done).error();
   return out;
 }
 
@@ -224,6 +226,7 @@ Result<PlannedShow> plan_for(Session& session, const PlanChoice& choice, bool wa
     } else {
       take_durations(out->loaded.show, out->planned.plan);
     }
+    take_people(out->loaded, out->planned.plan);
     session.clear_line();
     return out;
   }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/load.hpp"
 #include "app/session.hpp"
@@ -25,6 +26,7 @@ struct PlanChoice {
   int threads = 0;      ///< 0: as many as there are processors
   bool afresh = false;  ///< take nothing from `stages`
   std::string stages;   ///< file of what earlier plannings gave, used where they fit; empty: none
+  std::vector<std::string> absent;  ///< ids of people who do not come, besides those of the show file
   /// A plan file that the user named may break its limits: it is taken, and marked as not valid.
   bool unchecked = false;
 

@@ -496,8 +496,9 @@ const Listing& show_listing() {
            .range = {0, 1000}},
           {.key = "absent",
            .type = Type::members,
-           .doc = "Who does not come, as `members`: somebody who waits in the reserve all the time takes the place, or "
-                  "it stays empty; nobody else's marks change.",
+           .doc =
+               "Who does not come, as `members`: whoever is on stage least, in the reserve if possible, walks the way "
+               "instead of her own, or the place stays empty; nobody else's marks change.",
            .otherwise = "everybody comes",
            .list = true},
           {.key = "rig",

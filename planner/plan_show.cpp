@@ -15,6 +15,7 @@
 #include "planner/schedule/chain.hpp"
 #include "planner/section_stage.hpp"
 #include "planner/shortest.hpp"
+#include "planner/stand_in.hpp"
 #include "planner/validate.hpp"
 
 namespace footlight::planner {
@@ -73,8 +74,9 @@ class ShowPlanner {
       stations_.clear();
       planned_ = {};
     }
-    describe();
     write_tracks(*chain);
+    stand_in();
+    describe();
     write_formations(*chain);
     note_what_gave_way(*chain);
     note_wide_people();
@@ -136,9 +138,6 @@ class ShowPlanner {
       if (!section.regions.empty()) return refuse("sections: regions");
       if (cells != nullptr && !cells->groups.empty()) return refuse("cells: the column group");
     }
-    for (const Performer& performer : show_.performers) {
-      if (performer.absent) return refuse("absent");
-    }
     for (const Group& group : show_.groups) {
       if (!group.exchange) return refuse("performers.groups: exchange: false");
     }
@@ -179,6 +178,7 @@ class ShowPlanner {
     plan.title = show_.title;
     plan.stage = show_.stage;
     for (const Performer& performer : show_.performers) {
+      if (performer.absent) continue;
       plan.performers.push_back(performer.id);
       plan.radius_m.push_back(performer.radius_m);
       plan.max_speed_mps.push_back(performer.max_speed_mps);
@@ -297,6 +297,30 @@ class ShowPlanner {
     }
   }
 
+  /// Everything up to here is planned as if everybody came; from here on the plan has nobody who does not.
+  void stand_in() {
+    auto& tracks = planned_.plan.tracks;
+    for (const StandIn& one : stand_ins(show_, tracks, widest_two_m() <= clearance_m_)) {
+      planned_.plan.sections.front().notes.push_back(stand_in_text(show_, one));
+      if (!one.taker) continue;
+      std::swap(tracks[one.absent.at()], tracks[one.taker->at()]);
+      for (auto& slots : slot_) std::swap(slots[one.absent.at()], slots[one.taker->at()]);
+    }
+    std::size_t present = 0;
+    for (std::size_t p = 0; p < tracks.size(); ++p) {
+      if (show_.performers[p].absent) continue;
+      if (present != p) tracks[present] = std::move(tracks[p]);
+      ++present;
+    }
+    tracks.resize(present);
+  }
+
+  [[nodiscard]] bool in_picture(const Stop& stop, std::uint32_t slot) const {
+    const CellIndex cell = stop.cells[slot];
+    if (!stop.exact && cell != stop.own[slot]) return false;
+    return !std::binary_search(show_.stage.reserve.begin(), show_.stage.reserve.end(), cell);
+  }
+
   void write_formations(const Chain& chain) {
     std::vector<int> number(show_.sections.size(), 0);
     for (std::size_t k = 0; k < chain.stops.size(); ++k) {
@@ -309,8 +333,14 @@ class ShowPlanner {
       formation.count = station.count;
       formation.time = station.arrive;
       formation.frame = station.frame;
-      for (std::size_t p = 0; p < show_.performers.size(); ++p) formation.cells.push_back(cell_of(chain, k, p));
       formation.in_picture = station.in_picture - stop.given_way;
+      for (std::size_t p = 0; p < show_.performers.size(); ++p) {
+        if (!show_.performers[p].absent) {
+          formation.cells.push_back(cell_of(chain, k, p));
+        } else if (in_picture(stop, slot_[k][p])) {
+          --formation.in_picture;
+        }
+      }
       formation.key = station.key;
       formation.moved = station.moved;
       formation.pinned = static_cast<int>(station.pins.size());
@@ -384,7 +414,7 @@ class ShowPlanner {
       const Instant end = chain.stops[k + 1].arrive;
       for (std::size_t p = 0; p < show_.performers.size(); ++p) {
         const Walking own = walking(chain, k, p);
-        if (own.start == start && own.end == end) continue;
+        if (show_.performers[p].absent || (own.start == start && own.end == end)) continue;
         if (waits[s]++ > 0) continue;
         const auto counts = [&](Instant from, Instant to) {
           return std::round(100 * (show_.tempo.count_at(to) - show_.tempo.count_at(from))) / 100;

@@ -169,6 +169,29 @@ TEST_F(StarterShow, AfterAChangeOnlyWhatDependsOnItIsPlannedAgain) {
   EXPECT_EQ(folder_.read("s/show.plan"), reused);
 }
 
+TEST_F(StarterShow, AbsentPeopleAreInNoPlanAndEveryCommandGoesOn) {
+  const Ran ran = footlight({"plan", show_, "--absent", "3,5"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, StartsWith("Twelve: 10 performers on 12 x 8 cells, "));
+  EXPECT_THAT(ran.out, HasSubstr("performer 3 is absent: "));
+  EXPECT_EQ(footlight({"dryrun", show_}).status, 0);
+  EXPECT_EQ(footlight({"measure", show_}).status, 0);
+  EXPECT_EQ(footlight({"export", show_, "--csv", folder_ / "out"}).status, 0);
+  EXPECT_EQ(footlight({"why", show_, "7", "2"}).status, 0);
+  const Ran gone = footlight({"why", show_, "3", "2"});
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_THAT(gone.err, StartsWith("error: there is no performer \"3\" "));
+  EXPECT_EQ(footlight({"plan", show_, "--absent", "77"}).err,
+            "error: --absent: there is no performer \"77\" (did you mean \"7\"?)\n");
+  EXPECT_EQ(footlight({"plan", show_, "--absent", "1,2,3,4,5,6,7,8,9,10,11,12"}).err,
+            "error: --absent: nobody is left (somebody has to come)\n");
+  // What is asked for once is not remembered: the show file says who does not come.
+  EXPECT_THAT(footlight({"plan", show_}).out, StartsWith("Twelve: 12 performers "));
+  folder_.write("s/show.yaml", folder_.read("s/show.yaml") + "\nabsent: [3, 5]\n");
+  EXPECT_THAT(footlight({"plan", show_, "--pictures", folder_ / "pictures"}).out, StartsWith("Twelve: 10 performers "));
+  EXPECT_EQ(footlight({"check", show_}).status, 0);
+}
+
 TEST_F(StarterShow, HarmedStagesAreNotUsed) {
   ASSERT_EQ(footlight({"plan", show_}).status, 0);
   const std::string before = folder_.read("s/show.plan");

@@ -109,5 +109,36 @@ TEST(TakeDurations, AreThoseOfThePlan) {
   EXPECT_EQ(show.sections[1].duration_counts, 7);
 }
 
+TEST(TakePeople, LeavesOutWhomThePlanDoesWithout) {
+  config::LoadedShow loaded;
+  Show& show = loaded.show;
+  for (const char* id : {"a", "b", "c"}) show.performers.emplace_back().id = id;
+  const std::vector<CellIndex> cells{CellIndex(10), CellIndex(20), CellIndex(30)};
+  show.sections = {section("named", CellsSource{"n.csv", cells}, 1, 1),
+                   section("free", CellsSource{"f.csv", cells, false}, 5, 1)};
+  show.sections[0].overrides.emplace_back().pin = {{PerformerIndex(1), cells[0], {}},
+                                                   {PerformerIndex(2), cells[1], {}}};
+  loaded.rig.nodes.emplace_back().channels = {{Channel::Kind::wearable, {}, PerformerIndex(1)},
+                                              {Channel::Kind::wearable, {}, PerformerIndex(2)},
+                                              {Channel::Kind::cell, CellIndex(3), {}}};
+  Plan plan;
+  plan.performers = {"a", "c"};
+  plan.formations.resize(2);
+  plan.formations[1].section = SectionIndex(1);
+  plan.formations[1].cells = {cells[2], cells[1]};
+  take_people(loaded, plan);
+  ASSERT_EQ(show.performers.size(), 2U);
+  EXPECT_EQ(show.performers[1].id, "c");
+  EXPECT_EQ(std::get<CellsSource>(show.sections[0].from).cells, (std::vector<CellIndex>{cells[0], cells[2]}));
+  EXPECT_EQ(std::get<CellsSource>(show.sections[1].from).cells, (std::vector<CellIndex>{cells[1], cells[2]}));
+  ASSERT_EQ(show.sections[0].overrides[0].pin.size(), 1U);
+  EXPECT_EQ(show.sections[0].overrides[0].pin[0].performer, PerformerIndex(1));
+  const auto& channels = loaded.rig.nodes[0].channels;
+  EXPECT_EQ(channels[0].kind, Channel::Kind::unused);
+  EXPECT_EQ(channels[1].kind, Channel::Kind::wearable);
+  EXPECT_EQ(channels[1].performer, PerformerIndex(1));
+  EXPECT_EQ(channels[2].cell, CellIndex(3));
+}
+
 }  // namespace
 }  // namespace footlight::app
