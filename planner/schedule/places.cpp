@@ -58,7 +58,8 @@ class Places {
   /// Looks at a person's choices, `base` away; `own` is the reduced cost of the place she holds now.
   void reach(std::uint32_t person, double base, double own) {
     for (const Choice& choice : choices_[person]) {
-      const double d = base + choice.cost - price_[choice.cell.at()] - own;
+      // Never below `base`: rounding must not make a way shorter by going around in a circle.
+      const double d = base + std::max(0.0, choice.cost - price_[choice.cell.at()] - own);
       double& known = distance_[choice.cell.at()];
       if (d >= known - 1e-12) continue;
       if (known == kFar) touched_.push_back(choice.cell);
