@@ -2,6 +2,8 @@
 #include "planner/schedule/snap.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "core/check.hpp"
 #include "planner/schedule/places.hpp"
@@ -20,45 +22,95 @@ class Snapper {
         grid_(task.ways->grid()),
         pitch_(grid_.pitch_m()),
         taken_(static_cast<std::size_t>(grid_.size()), 0),
-        wanted_here_(static_cast<std::size_t>(grid_.size()), 0) {
+        wanted_here_(static_cast<std::size_t>(grid_.size()), 0),
+        hold_(task.now.size(), 0),
+        slow_(task.now.size(), 0) {
     for (const CellIndex cell : task.own) wanted_here_[cell.at()] = 1;
   }
 
-  std::vector<CellIndex> run() {
-    const std::size_t people = task_.now.size();
-    std::vector<CellIndex> next(people);
-    std::vector<std::size_t> moving;
-    for (std::size_t i = 0; i < people; ++i) {
-      if (holds(i)) taken_[task_.now[i].at()] = 1;
-    }
-    for (std::size_t i = 0; i < people; ++i) {
-      if (holds(i)) {
-        next[i] = task_.now[i];
-      } else if (on_time(i)) {
-        next[i] = task_.own[i];
-        taken_[next[i].at()] = 1;
-      } else {
-        moving.push_back(i);
+  std::vector<CellIndex> run(std::span<const char> hold, std::span<const char> slow) {
+    changed_.assign(slow_.size(), 0);
+    for (std::size_t i = 0; i < slow.size(); ++i) changed_[i] = slow[i] != slow_[i] ? 1 : 0;
+    hold_.assign(hold.begin(), hold.end());
+    slow_.assign(slow.begin(), slow.end());
+    hold_.resize(changed_.size(), 0);
+    slow_.resize(changed_.size(), 0);
+    for (;; ++level_) {
+      std::vector<CellIndex> next = stand();
+      if (std::find(moving_.begin(), moving_.end(), 1) == moving_.end()) {
+        places_.reset();
+        return next;
       }
+      places_ ? offer() : offer_all();
+      if (places_->seat_all()) {
+        for (std::uint32_t i = 0; i < next.size(); ++i) {
+          if (moving_[i] != 0) next[i] = places_->place_of(i);
+        }
+        return next;
+      }
+      places_.reset();
+      FL_CHECK(level_ != kTogether);  // staying where they are is always an answer
     }
-    if (moving.empty()) return next;
-    for (const double radius : {2.3 * pitch_, 5.2 * pitch_}) {
-      std::vector<std::vector<Choice>> choices;
-      choices.reserve(moving.size());
-      for (const std::size_t i : moving) choices.push_back(places_on_the_way(i, radius));
-      const auto placed = cheapest_places(choices, taken_.size());
-      if (!placed) continue;
-      for (std::size_t m = 0; m < moving.size(); ++m) next[moving[m]] = (*placed)[m];
-      return next;
-    }
-    return together();
   }
 
  private:
-  [[nodiscard]] bool holds(std::size_t slot) const { return !task_.hold.empty() && task_.hold[slot] != 0; }
+  /// Around the aim, where people on the way may stand, pitches; the second where the first has no answer, and where
+  /// that has none, either, everybody may be displaced.
+  static constexpr std::array kRadii{2.3, 5.2};
+  static constexpr std::size_t kTogether = kRadii.size();
+
+  /// Who stays and who is on time; everybody else is `moving_`, or together everybody who need not stay.
+  std::vector<CellIndex> stand() {
+    taken_before_ = taken_;
+    moving_before_ = moving_;
+    on_time_before_ = on_time_;
+    std::fill(taken_.begin(), taken_.end(), char{0});
+    moving_.assign(hold_.size(), 0);
+    on_time_.assign(hold_.size(), 0);
+    std::vector<CellIndex> next(task_.now.begin(), task_.now.end());
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      if (hold_[i] != 0) taken_[task_.now[i].at()] = 1;
+    }
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      if (hold_[i] != 0) continue;
+      on_time_[i] = on_time(i) ? 1 : 0;
+      moving_[i] = on_time_[i] == 0 || level_ == kTogether ? 1 : 0;
+      if (moving_[i] != 0) continue;
+      next[i] = task_.own[i];
+      taken_[next[i].at()] = 1;
+    }
+    return next;
+  }
+
+  void offer_all() {
+    places_.emplace(moving_.size(), taken_.size());
+    for (std::size_t c = 0; c < taken_.size(); ++c) {
+      if (taken_[c] != 0) places_->close(CellIndex::of(c));
+    }
+    for (std::uint32_t i = 0; i < moving_.size(); ++i) {
+      if (moving_[i] != 0) places_->choose(i, places(i));
+    }
+  }
+
+  /// What is different from the round before.
+  void offer() {
+    for (std::size_t c = 0; c < taken_.size(); ++c) {
+      if (taken_[c] == taken_before_[c]) continue;
+      taken_[c] != 0 ? places_->close(CellIndex::of(c)) : places_->open(CellIndex::of(c));
+    }
+    for (std::uint32_t i = 0; i < moving_.size(); ++i) {
+      const bool other = changed_[i] != 0 || moving_[i] != moving_before_[i] || on_time_[i] != on_time_before_[i];
+      if (other) places_->choose(i, moving_[i] != 0 ? places(i) : std::vector<Choice>());
+    }
+  }
+
+  [[nodiscard]] std::vector<Choice> places(std::size_t slot) const {
+    if (on_time_[slot] != 0) return places_nearby(slot);
+    return places_on_the_way(slot, kRadii[level_ % kTogether] * pitch_);
+  }
 
   [[nodiscard]] double longest_m(std::size_t slot) const {
-    return !task_.slow.empty() && task_.slow[slot] != 0 ? std::min(task_.slow_m, task_.longest_m) : task_.longest_m;
+    return slow_[slot] != 0 ? std::min(task_.slow_m, task_.longest_m) : task_.longest_m;
   }
 
   [[nodiscard]] bool reachable(std::size_t slot, CellIndex cell) const {
@@ -106,55 +158,64 @@ class Snapper {
     std::vector<Choice> choices;
     const Point at = aim(slot);
     for (const CellIndex cell : grid_.within(at, radius)) {
-      if (taken_[cell.at()] != 0 || !ways_.can_stand(cell) || !reachable(slot, cell)) continue;
+      if (!ways_.can_stand(cell) || !reachable(slot, cell)) continue;
       choices.push_back({cell, cost(slot, at, cell)});
     }
-    const CellIndex stay = task_.now[slot];
-    const bool listed = std::any_of(choices.begin(), choices.end(), [&](const Choice& c) { return c.cell == stay; });
-    if (!listed && taken_[stay.at()] == 0) choices.push_back({stay, 100 + cost(slot, at, stay)});
+    add_staying(slot, at, choices);
     return choices;
   }
 
-  /// Everybody may be displaced. Staying where they are is always an answer.
-  std::vector<CellIndex> together() {
-    std::fill(taken_.begin(), taken_.end(), char{0});
-    for (std::size_t i = 0; i < task_.now.size(); ++i) {
-      if (holds(i)) taken_[task_.now[i].at()] = 1;
+  void add_staying(std::size_t slot, Point at, std::vector<Choice>& choices) const {
+    const CellIndex stay = task_.now[slot];
+    const bool listed = std::any_of(choices.begin(), choices.end(), [&](const Choice& c) { return c.cell == stay; });
+    if (!listed) choices.push_back({stay, 100 + cost(slot, at, stay)});
+  }
+
+  /// Of somebody who could be on time.
+  [[nodiscard]] std::vector<Choice> places_nearby(std::size_t slot) const {
+    std::vector<Choice> choices{{task_.own[slot], 0.0}};
+    const Point at = grid_.centre(task_.own[slot]);
+    for (const CellIndex cell : grid_.within(at, 1.5 * pitch_)) {
+      if (cell == task_.own[slot] || !ways_.can_stand(cell) || !reachable(slot, cell)) continue;
+      choices.push_back({cell, 10 + cost(slot, at, cell)});
     }
-    std::vector<std::vector<Choice>> choices(task_.now.size());
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-      if (holds(i)) {
-        choices[i] = {{task_.now[i], 0.0}};
-        continue;
-      }
-      const bool in_time = on_time(i);
-      choices[i] = in_time ? std::vector<Choice>{{task_.own[i], 0.0}} : places_on_the_way(i, 2.3 * pitch_);
-      if (!in_time) continue;
-      const Point at = grid_.centre(task_.own[i]);
-      for (const CellIndex cell : grid_.within(at, 1.5 * pitch_)) {
-        if (cell == task_.own[i] || taken_[cell.at()] != 0 || !ways_.can_stand(cell) || !reachable(i, cell)) continue;
-        choices[i].push_back({cell, 10 + cost(i, at, cell)});
-      }
-      const CellIndex stay = task_.now[i];
-      const bool listed =
-          std::any_of(choices[i].begin(), choices[i].end(), [&](const Choice& c) { return c.cell == stay; });
-      if (!listed) choices[i].push_back({stay, 100 + cost(i, at, stay)});
-    }
-    auto placed = cheapest_places(choices, taken_.size());
-    FL_CHECK(placed.has_value());
-    return std::move(*placed);
+    add_staying(slot, at, choices);
+    return choices;
   }
 
   const SnapTask& task_;
   const Ways& ways_;
   const Grid& grid_;
   double pitch_;
-  CellFlags taken_;
+  CellFlags taken_;  ///< by who stays or is on time
   CellFlags wanted_here_;
+  std::vector<char> hold_;
+  std::vector<char> slow_;
+  std::vector<char> moving_;
+  std::vector<char> on_time_;
+  std::vector<char> changed_;  ///< slow, and was not in the round before, or the other way round
+  CellFlags taken_before_;     ///< in the round before
+  std::vector<char> moving_before_;
+  std::vector<char> on_time_before_;
+  std::size_t level_ = 0;         ///< into kRadii, or kTogether; kept, since choices hardly grow from round to round
+  std::optional<Places> places_;  ///< of the round before; nothing: to be found anew
 };
 
 }  // namespace
 
-std::vector<CellIndex> snap(const SnapTask& task) { return Snapper(task).run(); }
+struct Snap::State {
+  explicit State(const SnapTask& of) : task(of), snapper(task) {}
+  SnapTask task;
+  Snapper snapper;
+};
+
+Snap::Snap(const SnapTask& task) : state_(std::make_unique<State>(task)) {}
+Snap::~Snap() = default;
+
+std::vector<CellIndex> Snap::cells(std::span<const char> hold, std::span<const char> slow) {
+  return state_->snapper.run(hold, slow);
+}
+
+std::vector<CellIndex> snap(const SnapTask& task) { return Snap(task).cells(task.hold, task.slow); }
 
 }  // namespace footlight::planner

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,5 +34,23 @@ struct SnapTask {
 /// preferred a little). All results are distinct, can be stood on and are at most `longest_m` away on a free straight
 /// way; where that cannot be had beside all the owners, some owners give way, too. O(people on the way x cells near)
 [[nodiscard]] std::vector<CellIndex> snap(const SnapTask& task);
+
+/// The same step asked for several times, for other people who hold or are slow: what does not change is kept, so that
+/// a later answer takes little more than what it changes; equally cheap places may be given to others than by `snap`.
+class Snap {
+ public:
+  /// @param task its lists must live as long as this; `hold` and `slow` are not looked at
+  explicit Snap(const SnapTask& task);
+  ~Snap();
+  Snap(const Snap&) = delete;
+  Snap& operator=(const Snap&) = delete;
+
+  /// @param hold, slow one flag a slot; empty: nobody has to
+  [[nodiscard]] std::vector<CellIndex> cells(std::span<const char> hold, std::span<const char> slow);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace footlight::planner

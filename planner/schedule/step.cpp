@@ -12,6 +12,8 @@ namespace {
 constexpr int kPatience = 4;
 /// Rounds in which those who conflict when they are late are slowed down.
 constexpr int kLagPatience = 10;
+/// The first of these, in which only one of two people in conflict is slowed down.
+constexpr int kGentleRounds = 3;
 /// The last of these, in which people may also wait before or after their walks.
 constexpr int kLastRounds = 3;
 
@@ -75,11 +77,10 @@ class OrderedStep {
     std::vector<char> hold(now_.size(), 0);
     std::vector<char> slow(now_.size(), 0);
     snap_task.slow_m = slow_m();
+    Snap snapping(snap_task);
     std::optional<Step> best;
     for (int round = 0, patience = kLagPatience; patience > 0; ++round) {
-      snap_task.hold = hold;
-      snap_task.slow = slow;
-      step.cells = snap(snap_task);
+      step.cells = snapping.cells(hold, slow);
       // The drawing gives way before anybody waits: a wait is one more switch of all markers.
       step.leg = pair(step.cells, task_.snap.ways->standable(), hold, patience <= kLastRounds);
       if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
@@ -90,7 +91,7 @@ class OrderedStep {
       }
       if (step.leg.late_conflicts.empty()) return step;
       --patience;
-      slow_down(step, patience >= kLagPatience - kPatience, slow, hold);
+      slow_down(step, patience >= kLagPatience - kGentleRounds, slow, hold);
       if (!best || step.leg.late_conflicts.size() < best->leg.late_conflicts.size()) best = std::move(step);
     }
     return std::move(*best);

@@ -2,6 +2,7 @@
 #include "planner/schedule/places.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -49,6 +50,56 @@ TEST(CheapestPlaces, AreTheBestOfAllWaysToSeatPeople) {
       cost += found->cost;
     }
     RC_ASSERT(std::abs(cost - expected) < 1e-9);
+  }));
+}
+
+TEST(CheapestPlaces, AreTheBestAgainAfterChoicesAndCellsChange) {
+  EXPECT_TRUE(rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    const std::size_t cells = 8 + rng.below(12);
+    const std::size_t people = 2 + rng.below(7);
+    Places places(people, cells);
+    std::vector<std::vector<Choice>> choices(people);
+    std::vector<char> closed(cells, 0);
+    for (int round = 0; round < 6; ++round) {
+      for (std::uint32_t p = 0; p < people; ++p) {
+        if (round > 0 && rng.below(3) != 0) continue;
+        choices[p].clear();
+        for (std::size_t c = 0; c < cells; ++c) {
+          if (rng.below(2) == 0) choices[p].push_back({CellIndex::of(c), static_cast<double>(rng.below(20))});
+        }
+        places.choose(p, choices[p]);
+      }
+      const std::size_t flipped = rng.below(cells);
+      closed[flipped] = closed[flipped] == 0 ? 1 : 0;
+      closed[flipped] != 0 ? places.close(CellIndex::of(flipped)) : places.open(CellIndex::of(flipped));
+      std::vector<std::vector<Choice>> possible;
+      for (const auto& list : choices) {
+        if (list.empty()) continue;
+        possible.emplace_back();
+        std::copy_if(list.begin(), list.end(), std::back_inserter(possible.back()),
+                     [&](const Choice& choice) { return closed[choice.cell.at()] == 0; });
+      }
+      const auto fresh = cheapest_places(possible, cells);
+      RC_ASSERT(places.seat_all() == fresh.has_value());
+      if (!fresh) continue;
+      const auto cost = [](const std::vector<Choice>& list, CellIndex cell) {
+        const auto found = std::find_if(list.begin(), list.end(), [&](const Choice& c) { return c.cell == cell; });
+        RC_ASSERT(found != list.end());
+        return found->cost;
+      };
+      std::set<CellIndex> used;
+      double sum = 0;
+      double least = 0;
+      for (std::uint32_t p = 0, n = 0; p < people; ++p) {
+        if (choices[p].empty()) continue;
+        RC_ASSERT(used.insert(places.place_of(p)).second && closed[places.place_of(p).at()] == 0);
+        sum += cost(choices[p], places.place_of(p));
+        least += cost(possible[n], (*fresh)[n]);
+        ++n;
+      }
+      RC_ASSERT(std::abs(sum - least) < 1e-9);
+    }
   }));
 }
 
