@@ -16,10 +16,9 @@ namespace {
 constexpr double kRounding_m = 1e-9;
 /// On the way around blocked cells there is a stop whenever somebody may have walked so many pitches.
 constexpr double kViaPitches = 4.5;
-/// Longest steps in which people wait before or after a walk: a count is halved until it is no longer than this. Every
-/// instant is a switch of all markers; walks to exact formations are long enough for steps that slow buses can carry.
+/// Longest steps in which people wait before or after a walk to an exact formation: a count is halved until it is no
+/// longer than this. Every instant is a switch of all markers; in films the drawing gives way instead.
 constexpr double kWait_s = 0.6;
-constexpr double kShortWait_s = 0.3;
 /// Cell by cell around blocked cells: room in each step for the rounding of instants, and steps walked at once.
 constexpr double kStepMargin = 1.001;
 constexpr std::size_t kStride = 4;
@@ -203,10 +202,10 @@ class ChainBuilder {
   }
 
   /// Who waits, waits on the beat: a whole count where it is no longer than that.
-  [[nodiscard]] double wait_s(Instant at, double longest_s) const {
+  [[nodiscard]] double wait_s(Instant at) const {
     const TempoMap& tempo = task_.show->tempo;
     double wait = 60 / tempo.bpm_at(tempo.count_at(at));
-    while (wait > longest_s) wait /= 2;
+    while (wait > kWait_s) wait /= 2;
     return wait;
   }
 
@@ -250,7 +249,7 @@ class ChainBuilder {
       task.clearance_m = task_.clearance_m;
       task.walked_s = to_seconds(stop.arrive - chain_.stops[k - 1].depart);
       task.lag_s = to_seconds(task_.show->stage.lag);
-      task.wait_s = wait_s(stop.arrive, stop.exact ? kWait_s : kShortWait_s);
+      task.wait_s = stop.exact ? wait_s(stop.arrive) : 0;
       const std::vector<std::uint32_t> names = both_named(k) ? numbers(stop.own.size()) : std::vector<std::uint32_t>();
       task.kind = names;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);

@@ -11,11 +11,9 @@ namespace {
 /// Rounds in which only one of two people in conflict has to wait.
 constexpr int kPatience = 4;
 /// Rounds in which those who conflict when they are late are slowed down.
-constexpr int kLagPatience = 10;
+constexpr int kLagPatience = 14;
 /// The first of these, in which only one of two people in conflict is slowed down.
 constexpr int kGentleRounds = 3;
-/// The last of these, in which people may also wait before or after their walks.
-constexpr int kLastRounds = 3;
 
 template <class T>
 std::vector<T> taken(std::span<const T> from, const std::vector<std::uint32_t>& order) {
@@ -81,8 +79,8 @@ class OrderedStep {
     std::optional<Step> best;
     for (int round = 0, patience = kLagPatience; patience > 0; ++round) {
       step.cells = snapping.cells(hold, slow);
-      // The drawing gives way before anybody waits: a wait is one more switch of all markers.
-      step.leg = pair(step.cells, task_.snap.ways->standable(), hold, patience <= kLastRounds);
+      // The drawing gives way and nobody waits: a wait is one more switch of all markers.
+      step.leg = pair(step.cells, task_.snap.ways->standable(), hold, false);
       if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
       step.leg.to.clear();
       if (!step.leg.conflicts.empty()) {
