@@ -219,7 +219,7 @@ class ShowPlanner {
     std::vector<double> fastest_mps(people, 0.0);
     for (std::size_t k = 0; k < chain.legs.size(); ++k) {
       for (std::size_t p = 0; p < people; ++p) {
-        const Walking when = walking(chain, k, p);
+        const Chain::WalkTimes when = walking(chain, k, p);
         const double walked_s = to_seconds(when.end - when.start);
         const Grid& grid = show_.stage.grid;
         const double walk_m = distance(grid.centre(cell_of(chain, k, p)), grid.centre(cell_of(chain, k + 1, p)));
@@ -264,20 +264,9 @@ class ShowPlanner {
     return chain.stops[k].cells[slot_[k][performer]];
   }
 
-  struct Walking {
-    Instant start;
-    Instant end;
-  };
   /// When somebody walks between stop k and the next.
-  [[nodiscard]] Walking walking(const Chain& chain, std::size_t k, std::size_t performer) const {
-    const Instant start = chain.stops[k].depart;
-    const Instant end = chain.stops[k + 1].arrive;
-    const auto& timing = chain.legs[k].timing;
-    if (timing.empty()) return {start, end};
-    const Leg::Timing& own = timing[slot_[k][performer]];
-    const double whole_s = to_seconds(end - start);
-    return {own.start > 0 ? start + seconds(own.start * whole_s) : start,
-            own.end < 1 ? start + seconds(own.end * whole_s) : end};
+  [[nodiscard]] Chain::WalkTimes walking(const Chain& chain, std::size_t k, std::size_t performer) const {
+    return chain.walk_times(k, slot_[k][performer]);
   }
 
   void write_tracks(const Chain& chain) {
@@ -413,7 +402,7 @@ class ShowPlanner {
       const Instant start = chain.stops[k].depart;
       const Instant end = chain.stops[k + 1].arrive;
       for (std::size_t p = 0; p < show_.performers.size(); ++p) {
-        const Walking own = walking(chain, k, p);
+        const Chain::WalkTimes own = walking(chain, k, p);
         if (show_.performers[p].absent || (own.start == start && own.end == end)) continue;
         if (waits[s]++ > 0) continue;
         const auto counts = [&](Instant from, Instant to) {

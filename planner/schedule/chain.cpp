@@ -395,6 +395,17 @@ class ChainBuilder {
 
 }  // namespace
 
+Chain::WalkTimes Chain::walk_times(std::size_t leg, std::uint32_t slot) const {
+  const Instant start = stops[leg].depart;
+  const Instant end = stops[leg + 1].arrive;
+  const auto& timing = legs[leg].timing;
+  if (timing.empty()) return {start, end};
+  const Leg::Timing& own = timing[slot];
+  const double whole_s = to_seconds(end - start);
+  return {own.start > 0 ? start + seconds(own.start * whole_s) : start,
+          own.end < 1 ? start + seconds(own.end * whole_s) : end};
+}
+
 std::optional<Chain> walk_through(const ChainTask& task, const Progress& progress) {
   return ChainBuilder(task, progress).run();
 }

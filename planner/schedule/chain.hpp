@@ -44,6 +44,13 @@ struct Chain {
   std::vector<Stop> stops;
   std::vector<Leg> legs;          ///< one less than stops
   std::vector<double> longest_m;  ///< for each leg, how far anybody may walk
+
+  /// When somebody walks from stop `leg` to the next; the others of the leg may walk at other times.
+  struct WalkTimes {
+    Instant start;
+    Instant end;
+  };
+  [[nodiscard]] WalkTimes walk_times(std::size_t leg, std::uint32_t slot) const;
 };
 
 /// From formations to walks: ideal pairings of neighbours (parallel), slots from each exact formation to the next,

@@ -63,7 +63,7 @@ class OrderedStep {
     Step step;
     if (task_.exact) {
       step.cells = own_;
-      step.leg = pair(step.cells, {}, {}, true);
+      step.leg = pair(step.cells, {}, {});
       return step;
     }
     SnapTask snap_task = task_.snap;
@@ -79,8 +79,7 @@ class OrderedStep {
     std::optional<Step> best;
     for (int round = 0, patience = kLagPatience; patience > 0; ++round) {
       step.cells = snapping.cells(hold, slow);
-      // The drawing gives way and nobody waits: a wait is one more switch of all markers.
-      step.leg = pair(step.cells, task_.snap.ways->standable(), hold, false);
+      step.leg = pair(step.cells, task_.snap.ways->standable(), hold);
       if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
       step.leg.to.clear();
       if (!step.leg.conflicts.empty()) {
@@ -113,8 +112,8 @@ class OrderedStep {
   }
 
  private:
-  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free, std::span<const char> hold,
-                         bool waits) const {
+  [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free,
+                         std::span<const char> hold) const {
     LegTask leg;
     leg.ways = task_.snap.ways;
     leg.from = now_;
@@ -123,7 +122,7 @@ class OrderedStep {
     leg.clearance_m = task_.clearance_m;
     leg.kind = kind_;
     leg.late_share = task_.walked_s > 0 ? std::min(1.0, task_.lag_s / task_.walked_s) : 0;
-    leg.stagger_share = waits && task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
+    leg.stagger_share = task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
     leg.free = free;
     leg.fixed_target = hold;
     return settle(leg);

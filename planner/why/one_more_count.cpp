@@ -103,10 +103,17 @@ class OneTransition {
       std::uint32_t slot = p;
       for (std::size_t k = 0; k < chain.stops.size(); ++k) {
         const Stop& stop = chain.stops[k];
-        if (k > 0) slot = chain.legs[k - 1].target_of[slot];
+        Instant arrive = stop.arrive;
+        if (k > 0) {
+          arrive = chain.walk_times(k - 1, slot).end;
+          slot = chain.legs[k - 1].target_of[slot];
+        }
         // A list of cells with names is in the order of the show.
         const bool named = stop.station && stations[*stop.station].pinned;
-        out.tracks[p].push_back({stop.arrive, named ? stations[*stop.station].cells[p] : stop.cells[slot]});
+        const CellIndex cell = named ? stations[*stop.station].cells[p] : stop.cells[slot];
+        out.tracks[p].push_back({arrive, cell});
+        const Instant depart = k < chain.legs.size() ? chain.walk_times(k, slot).start : stop.depart;
+        if (depart > arrive) out.tracks[p].push_back({depart, cell});
       }
     }
     return out;
