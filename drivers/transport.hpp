@@ -31,11 +31,18 @@ class ByteStream {
   [[nodiscard]] virtual Duration wire_time(std::size_t bytes) const = 0;
 };
 
-/// A classic CAN data frame with an 11-bit identifier.
+/// A CAN data frame with an 11-bit identifier, or what the interface tells of the bus.
 struct CanFrame {
+  enum class Kind : std::uint8_t {
+    classic,  ///< at most 8 bytes
+    fd,       ///< CAN FD, all of it at the nominal bit rate
+    fd_fast,  ///< CAN FD, the data at the second bit rate
+    error,    ///< not on the bus: id holds the CAN_ERR_ classes of linux/can/error.h, data its eight bytes of detail
+  };
   std::uint16_t id = 0;
-  std::uint8_t length = 0;  ///< 0..8
-  std::array<std::uint8_t, 8> data{};
+  std::uint8_t length = 0;  ///< 0..8; CAN FD also 12, 16, 20, 24, 32, 48, 64
+  std::array<std::uint8_t, 64> data{};
+  Kind kind = Kind::classic;
 
   friend bool operator==(const CanFrame&, const CanFrame&) = default;
 };
@@ -45,6 +52,7 @@ class CanPort {
  public:
   virtual ~CanPort() = default;
   virtual SendStatus send(const CanFrame& frame) = 0;
+  /// Data frames and error frames, in the order in which the interface told them; own frames are not among them.
   /// @return false when nothing has arrived
   virtual bool receive(CanFrame& frame) = 0;
   /// Time of one frame on the wire at worst stuffing, inter-frame space included.

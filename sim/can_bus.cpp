@@ -88,7 +88,7 @@ void CanBus::act(std::uint64_t token_of_event) {
 }
 
 SendStatus CanBus::send(const CanFrame& frame) {
-  FL_CHECK(frame.length <= 8 && frame.id <= 0x7FF);
+  FL_CHECK(frame.kind == CanFrame::Kind::classic && frame.length <= 8 && frame.id <= 0x7FF);
   if (queued() >= kQueue) return SendStatus::busy;
   queue_.push_back(frame);
   wake();

@@ -35,7 +35,7 @@ CanSocket::CanSocket(FileDescriptor socket, int bits_per_second)
 }
 
 SendStatus CanSocket::send(const CanFrame& frame) {
-  FL_CHECK(frame.length <= 8);
+  FL_CHECK(frame.kind == CanFrame::Kind::classic && frame.length <= 8);
   if (bus_off_) return SendStatus::down;
   struct can_frame raw {};
   raw.can_id = frame.id & CAN_SFF_MASK;
@@ -52,6 +52,7 @@ SendStatus CanSocket::send(const CanFrame& frame) {
 
 bool CanSocket::receive(CanFrame& frame) {
   struct can_frame raw {};
+  frame = {};
   while (::read(socket_.get(), &raw, sizeof raw) == static_cast<ssize_t>(sizeof raw)) {
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
       if ((raw.can_id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
@@ -62,7 +63,7 @@ bool CanSocket::receive(CanFrame& frame) {
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0 || raw.can_dlc > 8) continue;
     frame.id = static_cast<std::uint16_t>(raw.can_id & CAN_SFF_MASK);
     frame.length = raw.can_dlc;
-    std::copy_n(raw.data, frame.data.size(), frame.data.begin());
+    std::copy_n(raw.data, frame.length, frame.data.begin());
     return true;
   }
   return false;

@@ -27,7 +27,7 @@ void CanopenMarker::power_on() {
 }
 
 CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, Instant now) {
-  if (frame.length > 8) return Reaction::none;
+  if (frame.kind != drivers::CanFrame::Kind::classic || frame.length > 8) return Reaction::none;
   model_.settle(now);
   if (frame.id == kNmt) return manage(frame, now);
   if (frame.id == kControllerHeartbeat) {

@@ -68,7 +68,7 @@ std::vector<CanFrame> look_entry(LookIndex index, const Look& look) {
 
 Heard decode(const CanFrame& frame) {
   const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
-  if (frame.id > 0x7FF || node < 1 || node > kLastNode) return {};
+  if (frame.kind != CanFrame::Kind::classic || frame.id > 0x7FF || node < 1 || node > kLastNode) return {};
   switch (frame.id - node) {
     case kEmergency:
       if (frame.length != 8) return {};

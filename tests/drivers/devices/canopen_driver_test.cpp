@@ -197,6 +197,15 @@ TEST_F(CanopenDriverTest, FramesOfTheWrongLengthOrOfStrangersAreNothing) {
   EXPECT_TRUE(port_.sent.empty());
 }
 
+TEST_F(CanopenDriverTest, AnErrorFrameIsNoAnswerThoughItsClassesLookLikeAnIdentifier) {
+  start();
+  for (const auto kind : {CanFrame::Kind::error, CanFrame::Kind::fd}) {
+    port_.incoming.push_back({.id = 0x181, .length = 8, .data = {1, 1, 0, 0, 1}, .kind = kind});
+  }
+  step();
+  EXPECT_TRUE(log_.events.empty());
+}
+
 TEST_F(CanopenDriverTest, APreloadThatTheWireLostIsMissed) {
   port_.capacity = 2;
   ASSERT_EQ(preload(kOne, 1), SendStatus::accepted);
