@@ -29,6 +29,9 @@ class ByteStream {
   virtual std::size_t read(std::span<std::uint8_t> buffer) = 0;
   /// Time that `bytes` characters take on the wire.
   [[nodiscard]] virtual Duration wire_time(std::size_t bytes) const = 0;
+  /// File descriptor that becomes readable when something arrives; -1: there is none now. Ask anew after each call of
+  /// another member, for the wire may have been opened again.
+  [[nodiscard]] virtual int poll_handle() const { return -1; }
 };
 
 /// A CAN data frame with an 11-bit identifier, or what the interface tells of the bus.
@@ -59,6 +62,8 @@ class CanPort {
   [[nodiscard]] virtual Duration wire_time(const CanFrame& frame) const = 0;
   /// Frames accepted and not yet on the wire.
   [[nodiscard]] virtual std::size_t queued() const = 0;
+  /// As of ByteStream.
+  [[nodiscard]] virtual int poll_handle() const { return -1; }
 };
 
 /// One Modbus request at the level of libmodbus; framing and check sums belong to the port.
@@ -91,6 +96,8 @@ class ModbusPort {
   [[nodiscard]] virtual bool busy() const = 0;
   /// Time on the wire of request, silences, the device's longest turnaround and reply.
   [[nodiscard]] virtual Duration wire_time(const ModbusRequest& request) const = 0;
+  /// As of ByteStream; a port that finishes each request inside `submit` has none.
+  [[nodiscard]] virtual int poll_handle() const { return -1; }
 };
 
 }  // namespace footlight::drivers

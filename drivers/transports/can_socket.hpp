@@ -28,6 +28,7 @@ class CanSocket final : public CanPort {
   bool receive(CanFrame& frame) override;
   [[nodiscard]] Duration wire_time(const CanFrame& frame) const override;
   [[nodiscard]] std::size_t queued() const override;
+  [[nodiscard]] int poll_handle() const override { return socket_.get(); }
 
  private:
   FileDescriptor socket_;

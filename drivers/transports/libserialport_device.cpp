@@ -35,6 +35,11 @@ class LibserialportDevice final : public SerialDevice {
     return static_cast<std::size_t>(count);
   }
 
+  [[nodiscard]] int poll_handle() const override {
+    int file = -1;
+    return sp_get_port_handle(port_.get(), &file) == SP_OK ? file : -1;
+  }
+
  private:
   PortPointer port_;
 };

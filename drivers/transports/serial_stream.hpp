@@ -22,6 +22,8 @@ class SerialDevice {
   virtual std::optional<std::size_t> write_some(std::span<const std::uint8_t> bytes) = 0;
   /// @return bytes read, 0 when none has arrived, nothing when the device is gone
   virtual std::optional<std::size_t> read_some(std::span<std::uint8_t> buffer) = 0;
+  /// File descriptor to poll for input.
+  [[nodiscard]] virtual int poll_handle() const = 0;
 };
 
 using OpenSerialDevice = std::function<Result<std::unique_ptr<SerialDevice>>()>;
@@ -36,6 +38,7 @@ class SerialStream final : public ByteStream {
   SendStatus write(std::span<const std::uint8_t> bytes) override;
   std::size_t read(std::span<std::uint8_t> buffer) override;
   [[nodiscard]] Duration wire_time(std::size_t bytes) const override;
+  [[nodiscard]] int poll_handle() const override { return device_ ? device_->poll_handle() : -1; }
 
  private:
   void push_unsent();

@@ -24,6 +24,7 @@ class TerminalDevice final : public SerialDevice {
   std::optional<std::size_t> read_some(std::span<std::uint8_t> buffer) override {
     return outcome(::read(file_.get(), buffer.data(), buffer.size()));
   }
+  [[nodiscard]] int poll_handle() const override { return file_.get(); }
 
  private:
   static std::optional<std::size_t> outcome(ssize_t count) {

@@ -35,6 +35,7 @@ class NarrowDevice final : public SerialDevice {
     if (wire_.gone) return std::nullopt;
     return 0;
   }
+  [[nodiscard]] int poll_handle() const override { return 17; }
 
  private:
   Wire& wire_;
@@ -85,6 +86,16 @@ TEST(SerialStream, AnUnplugIsSeenByReading) {
   Bytes buffer(16);
   EXPECT_EQ(stream.read(buffer), 0U);
   EXPECT_EQ(stream.write(Bytes{1}), SendStatus::down);
+}
+
+TEST(SerialStream, IsPolledByItsDeviceUntilThatIsGone) {
+  NarrowDevice::Wire wire;
+  SerialStream stream = narrow_stream(wire);
+  EXPECT_EQ(stream.poll_handle(), 17);
+  wire.gone = true;
+  Bytes buffer(16);
+  stream.read(buffer);
+  EXPECT_EQ(stream.poll_handle(), -1);
 }
 
 TEST(SerialStream, TenBitsACharacter) {
