@@ -26,7 +26,10 @@ void add(Sha256& sum, const Stage& stage) {
   sum.real(stage.grid.pitch_m());
   add(sum, stage.blocked);
   add(sum, stage.reserve);
-  sum.real(stage.clearance_m).real(stage.max_speed_mps).integer(stage.lag.count());
+  sum.real(stage.clearance_m)
+      .real(stage.max_speed_mps)
+      .integer(stage.lag.count())
+      .integer(static_cast<int>(stage.walk));
 }
 
 void add(Sha256& sum, const FilmPlacement& film) {

@@ -34,11 +34,12 @@ void write_meta(Database& database, const Plan& plan) {
 }
 
 void write_stage(Database& database, const Stage& stage) {
-  Statement row = database.prepare("INSERT INTO stage VALUES(0, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Statement row = database.prepare("INSERT INTO stage VALUES(0, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.bind(to_text(stage.grid.kind()));
   row.bind(std::int64_t{stage.grid.columns()}).bind(std::int64_t{stage.grid.rows()}).bind(stage.grid.pitch_m());
   row.bind_blob(encode_cells(stage.blocked)).bind_blob(encode_cells(stage.reserve));
-  row.bind(stage.clearance_m).bind(stage.max_speed_mps).bind(std::int64_t{stage.lag.count()}).run();
+  row.bind(stage.clearance_m).bind(stage.max_speed_mps).bind(std::int64_t{stage.lag.count()});
+  row.bind(to_text(stage.walk)).run();
 }
 
 void write_performers(Database& database, const Plan& plan) {

@@ -148,7 +148,7 @@ class PlanReader {
 
   bool stage() {
     Rows rows(database_,
-              "SELECT number, grid, columns, rows, pitch_m, blocked, reserve, clearance_m, max_speed_m_s, lag_ns "
+              "SELECT number, grid, columns, rows, pitch_m, blocked, reserve, clearance_m, max_speed_m_s, lag_ns, walk "
               "FROM stage ORDER BY number",
               "stage");
     while (rows.next()) {
@@ -165,6 +165,9 @@ class PlanReader {
       plan_.stage.clearance_m = rows.real();
       plan_.stage.max_speed_mps = rows.real();
       plan_.stage.lag = rows.instant().time_since_epoch();
+      const auto walk = walk_kind_from(rows.text());
+      if (!walk) return fail("table stage: there is no such kind of walk");
+      plan_.stage.walk = *walk;
       if (!ascending(plan_.stage.blocked) || !ascending(plan_.stage.reserve)) rows.wrong("cells are not in order");
     }
     if (rows.count() == 0) rows.wrong("it has no row");

@@ -19,7 +19,7 @@ inline constexpr std::array kPlanSchema{
     "CREATE TABLE stage(number INTEGER PRIMARY KEY, grid TEXT NOT NULL, columns INTEGER NOT NULL, rows INTEGER NOT "
     "NULL, "
     "pitch_m REAL NOT NULL, blocked BLOB NOT NULL, reserve BLOB NOT NULL, clearance_m REAL NOT NULL, "
-    "max_speed_m_s REAL NOT NULL, lag_ns INTEGER NOT NULL) STRICT",
+    "max_speed_m_s REAL NOT NULL, lag_ns INTEGER NOT NULL, walk TEXT NOT NULL) STRICT",
     "CREATE TABLE performers(number INTEGER PRIMARY KEY, id TEXT NOT NULL, radius_m REAL NOT NULL, "
     "max_speed_m_s REAL NOT NULL) STRICT",
     "CREATE TABLE tracks(performer INTEGER PRIMARY KEY, marks BLOB NOT NULL) STRICT",

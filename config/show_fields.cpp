@@ -462,6 +462,13 @@ const Listing& show_listing() {
            .range = {1, 1}},
           {.key = "title", .type = Type::text, .doc = "For people.", .required = true},
           {.key = "stage", .type = Type::mapping, .doc = "The floor.", .required = true, .listing = &stage_listing()},
+          {.key = "walk",
+           .type = Type::choice,
+           .doc =
+               "How people go from one formation to the next. `straight`: each in a line at constant speed. `cells`: "
+               "over neighbouring cells, one cell a count, on whole counts.",
+           .fallback = "straight",
+           .choices = {"straight", "cells"}},
           {.key = "performers",
            .type = Type::mapping,
            .doc = "Who is on it.",

@@ -38,6 +38,7 @@ class AnyPlan {
     plan.stage.clearance_m = real();
     plan.stage.max_speed_mps = real();
     plan.stage.lag = Duration(number(1'000'000'000));
+    plan.stage.walk = rng_.below(2) == 0 ? WalkKind::straight : WalkKind::cells;
     people_ = 1 + number(most_people);
     for (int i = 0; i < people_; ++i) {
       plan.performers.push_back(text());
@@ -251,6 +252,10 @@ TEST_F(HarmedPlan, MissingRowsAreNamed) {
 
 TEST_F(HarmedPlan, AGridThatDoesNotExistIsNamed) {
   EXPECT_EQ(after("UPDATE stage SET columns = 1000000"), harmed("table stage: there is no such grid"));
+}
+
+TEST_F(HarmedPlan, AKindOfWalkThatDoesNotExistIsNamed) {
+  EXPECT_EQ(after("UPDATE stage SET walk = 'hop'"), harmed("table stage: there is no such kind of walk"));
 }
 
 TEST_F(HarmedPlan, ViewsTriggersAndStrangeTablesAreRefusedUnread) {

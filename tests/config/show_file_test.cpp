@@ -90,6 +90,17 @@ TEST_F(ShowFile, KnowsEveryPlannerModel) {
   }
 }
 
+TEST_F(ShowFile, PeopleWalkStraightOrOverCells) {
+  using enum WalkKind;
+  const std::string sections =
+      "sections:\n  - {name: s, from: {video: film.mp4}, start: count 1, duration: 8 counts}\n";
+  EXPECT_EQ(loaded(std::string(kHead) + sections).show.stage.walk, straight);
+  EXPECT_EQ(loaded(std::string(kHead) + "walk: straight\n" + sections).show.stage.walk, straight);
+  EXPECT_EQ(loaded(std::string(kHead) + "walk: cells\n" + sections).show.stage.walk, cells);
+  EXPECT_EQ(errors(std::string(kHead) + "walk: cell\n" + sections),
+            "show.yaml:5:7: error: walk: \"cell\" is not one of the choices (did you mean \"cells\"?)\n");
+}
+
 TEST_F(ShowFile, TakesEveryKey) {
   folder_.write("rig.yaml", "rig: 1\nbuses: [{name: c, url: \"sim://can\"}]\nfloor: {buses: [c]}\n");
   const LoadedShow all = loaded(R"(# yaml-language-server: $schema=../docs/schema/show.schema.json
