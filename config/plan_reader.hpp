@@ -11,7 +11,7 @@
 namespace footlight::config {
 
 inline constexpr std::int64_t kPlanApplicationId = 0x464C5054;  ///< "FLPT"
-inline constexpr std::int64_t kPlanVersion = 2;
+inline constexpr std::int64_t kPlanVersion = 3;
 
 /// The tables of a plan file; docs/plan-file.md says what stands in them. A file with any other schema is no plan.
 inline constexpr std::array kPlanSchema{

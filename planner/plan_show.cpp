@@ -138,6 +138,7 @@ class ShowPlanner {
       if (!section.regions.empty()) return refuse("sections: regions");
       if (cells != nullptr && !cells->groups.empty()) return refuse("cells: the column group");
     }
+    if (show_.stage.walk == WalkKind::cells) return refuse("walk: cells");
     for (const Group& group : show_.groups) {
       if (!group.exchange) return refuse("performers.groups: exchange: false");
     }
