@@ -17,8 +17,9 @@ const Listing& bus_listing() {
            .choices = {"serial", "modbus-rtu", "modbus-tcp", "can"}},
           {.key = "url",
            .type = Type::text,
-           .doc = "`serial:///dev/serial/by-id/...`, `rtu:///dev/...`, `tcp://host:502`, `can://can0`, or without "
-                  "hardware `sim://serial`, `sim://rtu`, `sim://tcp`, `sim://can`.",
+           .doc = "`serial:///dev/serial/by-id/...`, `rtu:///dev/...`, by the adapter's USB serial number "
+                  "`serial://usb/NUMBER` and `rtu://usb/NUMBER`, `tcp://host:502`, `can://can0`, or without hardware "
+                  "`sim://serial`, `sim://rtu`, `sim://tcp`, `sim://can`.",
            .required = true},
           {.key = "bits_per_second",
            .type = Type::integer,
@@ -33,6 +34,25 @@ const Listing& bus_listing() {
            .type = Type::text,
            .doc = "Power supply of its nodes, for those that name none; `footlight dark` asks what hangs on it.",
            .otherwise = "not known"},
+          {.key = "characters",
+           .type = Type::choice,
+           .doc = "Serial and RTU: parity and stop bits of a character.",
+           .otherwise = "RTU 8E1, serial 8N1",
+           .choices = {"8N1", "8N2", "8E1", "8O1"}},
+          {.key = "direction",
+           .type = Type::choice,
+           .doc = "RS-485: who turns the transceiver from listening to speaking: the adapter by itself, the kernel's "
+                  "driver, or the controller by RTS or by a GPIO line.",
+           .fallback = "adapter",
+           .choices = {"adapter", "kernel", "rts", "gpio"}},
+          {.key = "direction_line",
+           .type = Type::text,
+           .doc = "`direction: gpio`: chip and line, as `gpiochip0:17`.",
+           .otherwise = "none"},
+          {.key = "direction_inverted",
+           .type = Type::boolean,
+           .doc = "The line is low while the controller speaks.",
+           .fallback = "false"},
       }};
   return kListing;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <map>
 #include <numeric>
 #include <set>
@@ -97,6 +98,7 @@ class RigReader {
     bus.bits_per_second = speed.value_or(bus.kind == BusKind::can ? 500'000 : 115'200);
     if (kind && speed) check_speed(reader, bus);
     if (known) read_bus_profile(reader, bus);
+    if (known) read_line(reader, bus);
     rig_.buses.push_back(std::move(bus));  // kept when wrong, so that its nodes give no echo
   }
 
@@ -126,6 +128,47 @@ class RigReader {
     if (range.contains(bus.bits_per_second)) return;
     reader.error("bits_per_second", in_quotes(std::to_string(bus.bits_per_second)) + " is out of range",
                  std::string(to_text(bus.kind)) + ": " + to_text(range, "bit/s"));
+  }
+
+  static void read_line(MappingReader& reader, Bus& bus) {
+    if (bus.kind != BusKind::serial && bus.kind != BusKind::modbus_rtu) {
+      for (const char* key : {"characters", "direction", "direction_line", "direction_inverted"}) {
+        if (!reader.has(key)) continue;
+        reader.error(reader.key_position(key), reader.path(key), "the key has no meaning here",
+                     "only serial and modbus-rtu buses are lines");
+      }
+      return;
+    }
+    if (reader.has("characters")) {
+      if (const auto choice = reader.choice("characters")) bus.line.characters = static_cast<Characters>(*choice);
+    }
+    bus.line.direction_inverted = reader.boolean("direction_inverted").value_or(false);
+    const auto direction = reader.choice("direction");
+    if (!direction) return;
+    bus.line.direction = static_cast<LineDirection>(*direction);
+    read_direction_line(reader, bus);
+  }
+
+  static void read_direction_line(MappingReader& reader, Bus& bus) {
+    const bool by_gpio = bus.line.direction == LineDirection::gpio;
+    if (!reader.has("direction_line")) {
+      if (by_gpio) reader.error("direction", "no line is named", "direction_line: gpiochip0:17");
+      return;
+    }
+    if (!by_gpio) {
+      return reader.error(reader.key_position("direction_line"), reader.path("direction_line"),
+                          "the key has no meaning here", "direction: gpio uses it");
+    }
+    const auto text = reader.text("direction_line");
+    if (!text) return;
+    const auto colon = text->rfind(':');
+    const char* const end = text->data() + text->size();
+    const char* const begin = colon == std::string::npos ? end : text->data() + colon + 1;
+    const auto [stop, wrong] = std::from_chars(begin, end, bus.line.direction_offset);
+    if (wrong != std::errc{} || stop != end || bus.line.direction_offset < 0 || colon == 0) {
+      return reader.error("direction_line", in_quotes(*text) + " is no GPIO line", "chip and number, as gpiochip0:17");
+    }
+    bus.line.direction_chip = text->substr(0, colon);
   }
 
   void read_bus_profile(MappingReader& reader, Bus& bus) {

@@ -19,4 +19,18 @@ std::string_view to_text(BusKind kind) {
   return "serial";
 }
 
+std::string_view to_text(Characters characters) {
+  switch (characters) {
+    case Characters::n1:
+      return "8N1";
+    case Characters::n2:
+      return "8N2";
+    case Characters::e1:
+      return "8E1";
+    case Characters::o1:
+      return "8O1";
+  }
+  return "8N1";
+}
+
 }  // namespace footlight

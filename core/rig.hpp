@@ -30,6 +30,29 @@ struct ModbusProfile {
   friend bool operator==(const ModbusProfile&, const ModbusProfile&) = default;
 };
 
+/// A character on a serial or RTU line: eight data bits, parity, stop bits.
+enum class Characters { n1, n2, e1, o1 };
+
+[[nodiscard]] std::string_view to_text(Characters characters);
+
+/// Who turns the transceiver of an RS-485 line from listening to speaking and back.
+enum class LineDirection {
+  adapter,  ///< the adapter by itself; or there is nothing to turn, as with RS-232 and RS-422
+  kernel,   ///< the kernel's driver, by RTS (TIOCSRS485)
+  rts,      ///< we, by RTS
+  gpio,     ///< we, by a line of a GPIO chip
+};
+
+/// What only serial and RTU lines have.
+struct SerialLine {
+  std::optional<Characters> characters;  ///< absent: 8E1 on RTU, else 8N1
+  LineDirection direction = LineDirection::adapter;
+  std::string direction_chip;       ///< gpio: "gpiochip0" or the chip's label
+  int direction_offset = 0;         ///< gpio: line of the chip
+  bool direction_inverted = false;  ///< low while speaking
+  friend bool operator==(const SerialLine&, const SerialLine&) = default;
+};
+
 /// One wire. `url` chooses the transport: sim://serial, sim://rtu, sim://tcp, sim://can, serial:///dev/...,
 /// rtu:///dev/..., tcp://host:502, can://can0.
 struct Bus {
@@ -40,7 +63,14 @@ struct Bus {
   std::optional<ModbusProfile> profile;  ///< Modbus only
   Position position;
   std::string supply{};  ///< power supply of its nodes that name none; empty: not known
+  SerialLine line{};
 
+  /// On this serial or RTU line.
+  [[nodiscard]] Characters characters() const {
+    return line.characters.value_or(kind == BusKind::modbus_rtu ? Characters::e1 : Characters::n1);
+  }
+  /// Start, data, parity and stop bits.
+  [[nodiscard]] int bits_per_character() const { return characters() == Characters::n1 ? 10 : 11; }
   [[nodiscard]] bool simulated() const { return url.rfind("sim://", 0) == 0; }
 };
 

@@ -41,6 +41,12 @@ struct DeviceEvent {
     bus_down,
     bus_up,
   };
+  /// When a request that was refused may be sent again.
+  enum class Again : std::uint8_t {
+    soon,   ///< like one that was missed
+    later,  ///< the device is busy: after a while, and a longer one each time
+    never,  ///< the same will be refused again
+  };
   Kind kind = Kind::missed;
   NodeIndex node;
   Sequence sequence = 0;
@@ -48,6 +54,7 @@ struct DeviceEvent {
   std::uint8_t state = 0;
   std::uint16_t boots = 0;
   std::uint16_t detail = 0;
+  Again again = Again::soon;
 };
 
 /// Takes events in the order in which the wire told them. Called inside `Driver::step`.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/time.hpp"
@@ -32,6 +33,8 @@ class ByteStream {
   /// File descriptor that becomes readable when something arrives; -1: there is none now. Ask anew after each call of
   /// another member, for the wire may have been opened again.
   [[nodiscard]] virtual int poll_handle() const { return -1; }
+  /// Why the wire is down, in whole words for people; empty while it is not.
+  [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 
 /// A CAN data frame with an 11-bit identifier, or what the interface tells of the bus.
@@ -64,6 +67,8 @@ class CanPort {
   [[nodiscard]] virtual std::size_t queued() const = 0;
   /// As of ByteStream.
   [[nodiscard]] virtual int poll_handle() const { return -1; }
+  /// As of ByteStream.
+  [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 
 /// One Modbus request at the level of libmodbus; framing and check sums belong to the port.
@@ -96,8 +101,13 @@ class ModbusPort {
   [[nodiscard]] virtual bool busy() const = 0;
   /// Time on the wire of request, silences, the device's longest turnaround and reply.
   [[nodiscard]] virtual Duration wire_time(const ModbusRequest& request) const = 0;
+  /// Throws away what has arrived and nobody waits for. Not while busy.
+  /// @return true when there was something
+  virtual bool discard() = 0;
   /// As of ByteStream; a port that finishes each request inside `submit` has none.
   [[nodiscard]] virtual int poll_handle() const { return -1; }
+  /// As of ByteStream.
+  [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 
 }  // namespace footlight::drivers

@@ -12,7 +12,6 @@ namespace {
 using drivers::ModbusReply;
 using drivers::ModbusRequest;
 
-constexpr int kBitsPerCharacter = 11;
 constexpr int kFastestCounted = 19'200;
 constexpr Duration kFixedSilence = microseconds(1750);
 constexpr Duration kShortestTurnaround = microseconds(500);
@@ -24,13 +23,13 @@ constexpr std::size_t kMostUnread = 16;
 
 Duration RtuBus::silence(const Bus& bus) {
   if (bus.bits_per_second > kFastestCounted) return kFixedSilence;
-  return bit_time(77, 2 * std::int64_t{bus.bits_per_second});  // 3.5 x 11 bits
+  return bit_time(7 * std::int64_t{bus.bits_per_character()}, 2 * std::int64_t{bus.bits_per_second});
 }
 
 RtuBus::RtuBus(const Bus& bus, const Surroundings& surroundings)
     : SimulatedBus(bus, surroundings),
       silence_(silence(bus)),
-      line_(bus_, kBitsPerCharacter, silence_, around_, use_, *this) {}
+      line_(bus_, bus.bits_per_character(), silence_, around_, use_, *this) {}
 
 std::size_t RtuBus::add(std::unique_ptr<SimulatedNode> node) {
   markers_.emplace_back(node->address(), bus_.profile.value_or(footlight_profile()), node->model());
@@ -63,6 +62,12 @@ drivers::SendStatus RtuBus::submit(const ModbusRequest& request) {
 }
 
 std::optional<ModbusReply> RtuBus::poll() { return std::exchange(reply_, std::nullopt); }
+
+bool RtuBus::discard() {
+  const bool any = !unread_.empty();
+  unread_.clear();
+  return any;
+}
 
 Duration RtuBus::wire_time(const ModbusRequest& request) const {
   const Duration out = line_.time_of(request_pdu(request).size() + kAddressAndCheckSum);

@@ -12,9 +12,9 @@
 
 namespace footlight::sim {
 
-/// Modbus RTU (Modbus over Serial Line V1.02): 11 bits a character, 3.5 characters of silence before each frame and
-/// 1.75 ms above 19,200 Bd, nodes answer 0.5 to 5 ms after a request. A node knows a frame by the silence after it, the
-/// port knows a reply by its length.
+/// Modbus RTU (Modbus over Serial Line V1.02): 11 bits a character as a rule, 3.5 characters of silence before each
+/// frame and 1.75 ms above 19,200 Bd, nodes answer 0.5 to 5 ms after a request. A node knows a frame by the silence
+/// after it, the port knows a reply by its length.
 ///
 /// The port is as forgetful as real ones: a reply that comes when nobody waits any more stays in its receive buffer and
 /// is the first thing that the next request hears. It passes over replies of other units, and a broadcast, which has no
@@ -36,6 +36,7 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   drivers::SendStatus submit(const drivers::ModbusRequest& request) override;
   std::optional<drivers::ModbusReply> poll() override;
   [[nodiscard]] bool busy() const override { return phase_ != Phase::idle; }
+  bool discard() override;
   [[nodiscard]] Duration wire_time(const drivers::ModbusRequest& request) const override;
 
  private:

@@ -7,7 +7,6 @@
 namespace footlight::sim {
 namespace {
 
-constexpr int kBitsPerCharacter = 10;
 constexpr Duration kShortestTurnaround = microseconds(200);
 constexpr Duration kLongestTurnaround = microseconds(2000);
 constexpr std::size_t kReceiveBuffer = 65'536;
@@ -29,7 +28,7 @@ std::size_t first_frame(std::span<const std::uint8_t> bytes) {
 
 SerialBus::SerialBus(const Bus& bus, const Surroundings& surroundings)
     : SimulatedBus(bus, surroundings),
-      line_(bus_, kBitsPerCharacter, Duration{}, around_, use_, *this),
+      line_(bus_, bus.bits_per_character(), Duration{}, around_, use_, *this),
       sent_until_(around_.world.now()) {}
 
 std::size_t SerialBus::add(std::unique_ptr<SimulatedNode> node) {

@@ -11,8 +11,8 @@
 
 namespace footlight::sim {
 
-/// Footlight serial over RS-485: 10 bits a character, answers 200 us to 2 ms after the request. Faults strike what lies
-/// between two frame delimiters, however the controller has cut its writes.
+/// Footlight serial over RS-485: 10 bits a character as a rule, answers 200 us to 2 ms after the request. Faults strike
+/// what lies between two frame delimiters, however the controller has cut its writes.
 class SerialBus final : public SimulatedBus, public drivers::ByteStream, private SharedLine::Listener {
  public:
   /// Bytes that the port takes before it is busy.

@@ -27,6 +27,7 @@ class TcpBus final : public SimulatedBus, public drivers::ModbusPort {
   drivers::SendStatus submit(const drivers::ModbusRequest& request) override;
   std::optional<drivers::ModbusReply> poll() override;
   [[nodiscard]] bool busy() const override { return busy_; }
+  bool discard() override { return false; }  // what belongs to another transaction has been passed over already
   [[nodiscard]] Duration wire_time(const drivers::ModbusRequest& request) const override;
 
  private:

@@ -53,6 +53,7 @@ class LibmodbusPort final : public ModbusPort {
   SendStatus submit(const ModbusRequest& request) override;
   std::optional<ModbusReply> poll() override { return std::exchange(reply_, std::nullopt); }
   [[nodiscard]] bool busy() const override { return reply_.has_value(); }
+  bool discard() override { return false; }
   [[nodiscard]] Duration wire_time(const ModbusRequest& request) const override;
 
  private:

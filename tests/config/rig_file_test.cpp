@@ -194,6 +194,51 @@ TEST_F(RigFile, RefusesWrongBuses) {
       "profile)\n");
 }
 
+TEST_F(RigFile, ALineHasItsCharactersAndADirection) {
+  const Rig rig = right(
+      "rig: 1\n"
+      "buses:\n"
+      "  - {name: a, url: \"rtu://usb/FT1ABC\"}\n"
+      "  - {name: b, url: \"rtu:///dev/ttyS4\", characters: 8N2, direction: kernel, direction_inverted: true}\n"
+      "  - {name: c, url: \"serial:///dev/ttyS5\", direction: gpio, direction_line: \"pinctrl-bcm2711:17\"}\n"
+      "floor: {buses: [a, b, c]}\n");
+  EXPECT_EQ(rig.buses[0].line, SerialLine{});
+  EXPECT_EQ(rig.buses[0].characters(), Characters::e1);
+  EXPECT_EQ(rig.buses[1].characters(), Characters::n2);
+  EXPECT_EQ(rig.buses[1].line.direction, LineDirection::kernel);
+  EXPECT_TRUE(rig.buses[1].line.direction_inverted);
+  EXPECT_EQ(rig.buses[2].characters(), Characters::n1);
+  EXPECT_EQ(rig.buses[2].line.direction_chip, "pinctrl-bcm2711");
+  EXPECT_EQ(rig.buses[2].line.direction_offset, 17);
+}
+
+TEST_F(RigFile, RefusesWrongLines) {
+  EXPECT_EQ(
+      messages("rig: 1\n"
+               "buses:\n"
+               "  - {name: a, url: \"sim://can\", characters: 8N1, direction: rts}\n"
+               "  - {name: b, url: \"sim://rtu\", characters: 7E1}\n"
+               "  - {name: c, url: \"sim://rtu\", direction: gpio}\n"
+               "  - {name: d, url: \"sim://rtu\", direction: gpio, direction_line: gpiochip0}\n"
+               "  - {name: e, url: \"sim://rtu\", direction: gpio, direction_line: \"gpiochip0:x\"}\n"
+               "  - {name: f, url: \"sim://rtu\", direction: rts, direction_line: \"gpiochip0:1\"}\n"
+               "  - {name: g, url: \"sim://rtu\", direction: radio, direction_inverted: maybe}\n"),
+      "rig.yaml:3:33: error: buses[0].characters: the key has no meaning here (only serial and modbus-rtu buses are "
+      "lines)\n"
+      "rig.yaml:3:50: error: buses[0].direction: the key has no meaning here (only serial and modbus-rtu buses are "
+      "lines)\n"
+      "rig.yaml:4:45: error: buses[1].characters: \"7E1\" is not one of the choices (did you mean \"8E1\"?)\n"
+      "rig.yaml:5:44: error: buses[2].direction: no line is named (direction_line: gpiochip0:17)\n"
+      "rig.yaml:6:66: error: buses[3].direction_line: \"gpiochip0\" is no GPIO line (chip and number, as "
+      "gpiochip0:17)\n"
+      "rig.yaml:7:66: error: buses[4].direction_line: \"gpiochip0:x\" is no GPIO line (chip and number, as "
+      "gpiochip0:17)\n"
+      "rig.yaml:8:49: error: buses[5].direction_line: the key has no meaning here (direction: gpio uses it)\n"
+      "rig.yaml:9:44: error: buses[6].direction: \"radio\" is not one of the choices (choices: adapter, kernel, rts, "
+      "gpio)\n"
+      "rig.yaml:9:71: error: buses[6].direction_inverted: \"maybe\" is neither true nor false (write true or false)\n");
+}
+
 TEST_F(RigFile, WarnsOfCellsWithoutLamp) {
   EXPECT_EQ(messages(std::string(kBuses) + "nodes: [{bus: ser, address: 1, channels: [A1:D6]}]\n"),
             "rig.yaml: warning: 24 cells have no lamp, the first is E1 (people find their place there without light; "

@@ -82,6 +82,10 @@ class RecordingModbus final : public ModbusPort {
     return std::exchange(reply, std::nullopt);
   }
   [[nodiscard]] bool busy() const override { return taken; }
+  bool discard() override {
+    ++discards;
+    return std::exchange(unread, false);
+  }
   [[nodiscard]] Duration wire_time(const ModbusRequest& request) const override {
     return rtu_wire_time(request, 115'200);
   }
@@ -92,6 +96,8 @@ class RecordingModbus final : public ModbusPort {
 
   SendStatus status = SendStatus::accepted;
   bool taken = false;
+  bool unread = false;  ///< something has arrived that nobody waits for
+  int discards = 0;
   std::optional<ModbusReply> reply;
   std::vector<ModbusRequest> sent;
 };
