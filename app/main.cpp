@@ -17,6 +17,7 @@
 #include "app/new_command.hpp"
 #include "app/plan_command.hpp"
 #include "app/session.hpp"
+#include "app/sim_command.hpp"
 #include "app/why_command.hpp"
 #include "config/nearest.hpp"
 
@@ -24,8 +25,8 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command, add_check_command,  add_plan_command,   add_measure_command,
-    add_why_command, add_export_command, add_dryrun_command, add_dark_command,
+    add_new_command,    add_check_command,  add_plan_command, add_measure_command, add_why_command,
+    add_export_command, add_dryrun_command, add_dark_command, add_sim_command,
 };
 
 constexpr const char* kFooter =

@@ -32,7 +32,8 @@ constexpr std::array kSchemes{
     Scheme{"can://", BusKind::can, ""},
 };
 
-/// The kind that a URL's scheme stands for; nothing when the URL is none of ours.
+}  // namespace
+
 std::optional<BusKind> kind_of_url(std::string_view url) {
   for (const Scheme& scheme : kSchemes) {
     const bool simulated = !scheme.example.empty();
@@ -43,6 +44,15 @@ std::optional<BusKind> kind_of_url(std::string_view url) {
   }
   return std::nullopt;
 }
+
+std::string example_url(BusKind kind) {
+  for (const Scheme& scheme : kSchemes) {
+    if (scheme.kind == kind) return std::string(scheme.example);
+  }
+  return {};
+}
+
+namespace {
 
 std::string urls_of(BusKind kind) {
   for (const Scheme& scheme : kSchemes) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/mapping_reader.hpp"
@@ -17,6 +18,11 @@ namespace footlight::config {
 /// @param performers_known false: wearables are not checked, since the roster itself has errors
 [[nodiscard]] Rig read_rig(const std::string& file, const Show& show, bool performers_known, Diagnostics& diagnostics,
                            std::vector<std::string>& files);
+
+/// The kind that a bus's URL stands for, simulated or not; nothing when the URL is none of ours.
+[[nodiscard]] std::optional<BusKind> kind_of_url(std::string_view url);
+/// A real one, for messages: "can://can0".
+[[nodiscard]] std::string example_url(BusKind kind);
 
 /// Simulated buses of three kinds, as many as carry well, with a lamp for every cell that is not blocked and every
 /// wearable of the performers. O(cells)

@@ -11,6 +11,10 @@ Instant SteadyClock::now() const {
   return Instant(std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - zero_));
 }
 
+Duration wall_time() {
+  return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
+}
+
 void ManualClock::advance_to(Instant instant) {
   FL_CHECK(instant >= now());
   now_.store(instant.time_since_epoch().count(), std::memory_order_release);

@@ -25,6 +25,10 @@ class SteadyClock final : public Clock {
   std::chrono::steady_clock::time_point zero_;
 };
 
+/// The machine's wall clock, since 1970-01-01 UTC: for what people and files call a time. It steps; nothing is timed by
+/// it.
+[[nodiscard]] Duration wall_time();
+
 /// Stands still until it is told to move: dry runs and tests.
 class ManualClock final : public Clock {
  public:

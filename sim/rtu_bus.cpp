@@ -76,6 +76,29 @@ Duration RtuBus::wire_time(const ModbusRequest& request) const {
          silence_;
 }
 
+void RtuBus::say(int /*client*/, std::span<const std::uint8_t> frame) {
+  if (frame.empty() || unsaid_.size() == kMostUnread) return;
+  unsaid_.emplace_back(frame.begin(), frame.end());
+  if (!busy()) say_next();
+}
+
+bool RtuBus::hear(int& client, std::vector<std::uint8_t>& frame) {
+  if (unread_.empty()) return false;
+  client = 0;
+  frame = std::move(unread_.front());
+  unread_.pop_front();
+  return true;
+}
+
+void RtuBus::say_next() {
+  auto frame = std::move(unsaid_.front());
+  unsaid_.pop_front();
+  request_ = {.unit = frame.front(), .function = 0, .first_register = 0, .count = 0, .values = {}};
+  ++generation_;
+  phase_ = Phase::stranger;
+  line_.say(kController, std::move(frame), std::max(around_.world.now(), quiet_at_));
+}
+
 void RtuBus::draw_losses(int speaker, std::string& note) {
   if (speaker != kController) {
     controller_missed_ = misses("controller", note);
@@ -97,7 +120,7 @@ void RtuBus::heard(int speaker, std::span<const std::uint8_t> bytes, bool copy) 
     in_air_.assign(bytes.begin(), bytes.end());
     heard_twice_ = false;
     around_.world.schedule(quiet_at_, *this, token(kNodesHear, 0, generation_));
-    request_is_out();
+    if (phase_ != Phase::stranger) request_is_out();
     return;
   }
   // Nodes hear each other's replies as well; none has the address of another, so nothing comes of it.
@@ -126,6 +149,9 @@ void RtuBus::act(std::uint64_t token_of_event) {
   switch (kind_of(token_of_event)) {
     case kNodesHear:
       nodes_hear();
+      if (phase_ != Phase::stranger) return;
+      phase_ = Phase::idle;
+      if (!unsaid_.empty()) say_next();
       return;
     case kNodeAnswers: {
       Answers& answers = answers_[slot];

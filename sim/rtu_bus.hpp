@@ -7,6 +7,7 @@
 
 #include "drivers/transport.hpp"
 #include "sim/markers/modbus_marker.hpp"
+#include "sim/modbus_line.hpp"
 #include "sim/shared_line.hpp"
 #include "sim/simulated_bus.hpp"
 
@@ -20,7 +21,9 @@ namespace footlight::sim {
 /// is the first thing that the next request hears. It passes over replies of other units, and a broadcast, which has no
 /// reply, empties the buffer. So after one late reply every later request to that node is answered by the reply before
 /// it, without an error, as libmodbus 3.1.6 does it. A frame that is heard twice is obeyed twice and answered once.
-class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private SharedLine::Listener {
+///
+/// As a ModbusLine it takes any bytes for a frame, one after the other, and hands on whatever the nodes say.
+class RtuBus final : public SimulatedBus, public drivers::ModbusPort, public ModbusLine, private SharedLine::Listener {
  public:
   /// From the last moment at which a reply may begin until nobody waits for it any more.
   static constexpr Duration kReplyMargin = milliseconds(25);
@@ -39,9 +42,12 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   bool discard() override;
   [[nodiscard]] Duration wire_time(const drivers::ModbusRequest& request) const override;
 
+  void say(int client, std::span<const std::uint8_t> frame) override;
+  bool hear(int& client, std::vector<std::uint8_t>& frame) override;
+
  private:
   enum Kind : unsigned { kNodesHear, kNodeAnswers, kGiveUp, kBroadcastOver };
-  enum class Phase { idle, sending, waiting, broadcast };
+  enum class Phase { idle, sending, waiting, broadcast, stranger };
   /// Of a slow device, too: it answers every request, one after the other.
   struct Answers {
     std::deque<std::vector<std::uint8_t>> waiting;
@@ -52,6 +58,7 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   void heard(int speaker, std::span<const std::uint8_t> bytes, bool copy) override;
   void draw_losses(int speaker, std::string& note) override;
   void request_is_out();
+  void say_next();
   void nodes_hear();
   void node_hears(std::size_t slot, bool copy);
   void take(std::span<const std::uint8_t> frame);
@@ -75,6 +82,7 @@ class RtuBus final : public SimulatedBus, public drivers::ModbusPort, private Sh
   Instant quiet_at_ = kStart;  ///< the port may speak again
   std::optional<drivers::ModbusReply> reply_;
   std::deque<std::vector<std::uint8_t>> unread_;  ///< heard when nobody waited
+  std::deque<std::vector<std::uint8_t>> unsaid_;  ///< of a stranger
 };
 
 }  // namespace footlight::sim

@@ -175,6 +175,10 @@ drivers::ModbusPort& SimulatedRig::modbus(BusIndex bus) {
   return dynamic_cast<drivers::ModbusPort&>(state_->bus(bus, {BusKind::modbus_rtu, BusKind::modbus_tcp}));
 }
 
+ModbusLine& SimulatedRig::modbus_line(BusIndex bus) {
+  return dynamic_cast<ModbusLine&>(state_->bus(bus, {BusKind::modbus_rtu, BusKind::modbus_tcp}));
+}
+
 Instant SimulatedRig::next_event() const { return state_->world.next(); }
 
 void SimulatedRig::advance_to(Instant instant) { state_->world.advance_to(instant); }
@@ -183,6 +187,14 @@ LookIndex SimulatedRig::shown(NodeIndex node, int channel) const {
   const auto [bus, slot] = state_->places.at(node.at());
   FL_CHECK(channel >= 0 && channel < static_cast<int>(state_->rig.nodes[node.at()].channels.size()));
   return bus->node(slot).shown(channel);
+}
+
+Look SimulatedRig::lamp(NodeIndex node, int channel) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  if (!bus->node(slot).powered()) return Look{{}, Effect::steady, 0};
+  const NodeModel& model = bus->node(slot).model();
+  if (model.identifying(state_->world.now())) return Look{{255, 255, 255}, Effect::blink, 255};
+  return model.look(model.shown(channel));
 }
 
 void SimulatedRig::end_faults() { state_->end_faults(); }

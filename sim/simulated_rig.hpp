@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/clock.hpp"
+#include "core/look.hpp"
 #include "core/rig.hpp"
 #include "drivers/transport.hpp"
 #include "sim/faults.hpp"
+#include "sim/modbus_line.hpp"
 
 namespace footlight::sim {
 
@@ -44,6 +46,8 @@ class SimulatedRig {
   [[nodiscard]] drivers::ByteStream& serial(BusIndex bus);
   [[nodiscard]] drivers::CanPort& can(BusIndex bus);
   [[nodiscard]] drivers::ModbusPort& modbus(BusIndex bus);
+  /// A Modbus bus for other programs, instead of its port.
+  [[nodiscard]] ModbusLine& modbus_line(BusIndex bus);
 
   /// Instant of the next thing that happens by itself (a frame ends, a node answers, a lease runs out); kNever when
   /// nothing does.
@@ -59,6 +63,9 @@ class SimulatedRig {
   [[nodiscard]] Instant faults_end() const;
   /// What a lamp shows now.
   [[nodiscard]] LookIndex shown(NodeIndex node, int channel) const;
+  /// How it looks now: the entry of the node's own table; black without power; white and blinking when it identifies
+  /// itself.
+  [[nodiscard]] Look lamp(NodeIndex node, int channel) const;
   [[nodiscard]] bool powered(NodeIndex node) const;
   /// True while the node keeps what it shows because it has not heard the controller for a second.
   [[nodiscard]] bool holds(NodeIndex node) const;

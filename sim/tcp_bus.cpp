@@ -21,6 +21,7 @@ constexpr Duration kRetransmission = milliseconds(200);  // the least of Linux
 constexpr std::int64_t kNetworkBitsPerSecond = 100'000'000;
 constexpr std::size_t kHeaders = 90;  // preamble 8, Ethernet 18, gap 12, IPv4 20, TCP with time stamps 32
 constexpr std::size_t kMbap = 7;
+constexpr std::size_t kMostUnheard = 1024;
 
 Duration network_time(std::size_t bytes) {
   return bit_time(static_cast<std::int64_t>(8 * (bytes + kHeaders)), kNetworkBitsPerSecond);
@@ -55,7 +56,7 @@ drivers::SendStatus TcpBus::submit(const ModbusRequest& request) {
     if (request.unit != 0 && request.unit != unit) continue;
     auto frame = tcp_frame(++transaction_, unit, pdu);
     at += network_time(frame.size());
-    transmit({slot, nodes_[slot]->epoch(), false, std::move(frame)}, kNodeHears, at);
+    transmit({slot, nodes_[slot]->epoch(), false, std::move(frame), kPort}, kNodeHears, at);
   }
   if (request.unit == 0) {
     around_.world.schedule(at, *this, token(kBroadcastOver, 0, generation_));
@@ -66,6 +67,23 @@ drivers::SendStatus TcpBus::submit(const ModbusRequest& request) {
 }
 
 std::optional<ModbusReply> TcpBus::poll() { return std::exchange(reply_, std::nullopt); }
+
+void TcpBus::say(int client, std::span<const std::uint8_t> frame) {
+  if (frame.size() < kMbap) return;
+  for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
+    if (nodes_[slot]->address() != frame[kMbap - 1]) continue;
+    transmit({slot, nodes_[slot]->epoch(), false, {frame.begin(), frame.end()}, client}, kNodeHears,
+             around_.world.now() + network_time(frame.size()));
+  }
+}
+
+bool TcpBus::hear(int& client, std::vector<std::uint8_t>& frame) {
+  if (unheard_.empty()) return false;
+  client = unheard_.front().first;
+  frame = std::move(unheard_.front().second);
+  unheard_.pop_front();
+  return true;
+}
 
 Duration TcpBus::wire_time(const ModbusRequest& request) const {
   const Duration out = network_time(request_pdu(request).size() + kMbap);
@@ -136,6 +154,10 @@ void TcpBus::node_hears(Message message) {
 
 void TcpBus::port_hears(const Message& message) {
   trace(message, '<');
+  if (message.client != kPort) {
+    if (unheard_.size() < kMostUnheard) unheard_.emplace_back(message.client, message.bytes);
+    return;
+  }
   if (!busy_ || request_.unit == 0) return;
   if (auto reply = tcp_reply(request_, transaction_, message.bytes)) {
     busy_ = false;
