@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "planner/by_hand.hpp"
+#include "planner/casting.hpp"
 #include "planner/parallel.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/proof.hpp"
@@ -65,7 +66,9 @@ class ShowPlanner {
     for (;;) {
       if (auto error = collect_stations(ways)) return *error;
       if (auto error = not_planned()) return *error;
-      chain = walk_through({&limits_, &ways, &stations_, clearance_m_, reuse_.stages, &counts_}, progress_);
+      auto casting = casting_of(show_, stations_);
+      if (!casting) return casting.error();
+      chain = walk_through({&limits_, &ways, &stations_, &*casting, clearance_m_, reuse_.stages, &counts_}, progress_);
       if (!chain) return interrupted();
       name_people(*chain);
       if (!slow || give_slow_people_slow_tracks(*chain) || slow_for_all_) break;
@@ -127,22 +130,8 @@ class ShowPlanner {
 
   /// What a show may ask for and no plan keeps yet: better refused than left out in silence.
   [[nodiscard]] std::optional<Error> not_planned() const {
-    const auto refuse = [&](const char* what) {
-      return input_error(show_.file + ": error: " + what + " cannot be planned by this version (leave it out)");
-    };
-    for (const Station& station : stations_) {
-      if (!station.pins.empty()) return refuse("overrides: pin");
-    }
-    for (const Section& section : show_.sections) {
-      const auto* cells = std::get_if<CellsSource>(&section.from);
-      if (!section.regions.empty()) return refuse("sections: regions");
-      if (cells != nullptr && !cells->groups.empty()) return refuse("cells: the column group");
-    }
-    if (show_.stage.walk == WalkKind::cells) return refuse("walk: cells");
-    for (const Group& group : show_.groups) {
-      if (!group.exchange) return refuse("performers.groups: exchange: false");
-    }
-    return std::nullopt;
+    if (show_.stage.walk != WalkKind::cells) return std::nullopt;
+    return input_error(show_.file + ": error: walk: cells cannot be planned by this version (leave it out)");
   }
 
   /// Formations of a section that were planned before, without the film; else anew.
@@ -186,35 +175,17 @@ class ShowPlanner {
     }
   }
 
-  /// slot_[k][p] is where performer p stands in the list of stop k. The first formation with names decides who is who;
-  /// later ones are reached by name, whatever the walks are.
+  /// slot_[k][p] is where performer p stands in the list of stop k.
   void name_people(const Chain& chain) {
     const std::size_t people = show_.performers.size();
-    slot_.assign(chain.stops.size(), std::vector<std::uint32_t>(people));
-    std::iota(slot_[0].begin(), slot_[0].end(), 0U);
-    bool named = false;
-    for (std::size_t k = 0; k < chain.stops.size(); ++k) {
-      if (k > 0) {
-        for (std::size_t p = 0; p < people; ++p) slot_[k][p] = chain.legs[k - 1].target_of[slot_[k - 1][p]];
-      }
-      const Stop& stop = chain.stops[k];
-      if (!stop.station || !stations_[*stop.station].pinned) continue;
-      const std::vector<std::uint32_t> wanted = slots_by_name(stop, stations_[*stop.station]);
-      if (!named) {
-        std::vector<std::uint32_t> path_in(people);  // path that passes through each slot here
-        for (std::uint32_t path = 0; path < people; ++path) path_in[slot_[k][path]] = path;
-        for (std::size_t j = 0; j < k; ++j) {
-          const std::vector<std::uint32_t> before = slot_[j];
-          for (std::size_t p = 0; p < people; ++p) slot_[j][p] = before[path_in[wanted[p]]];
-        }
-      }
-      slot_[k] = wanted;
-      named = true;
+    slot_.assign(chain.stops.size(), chain.first_place);
+    for (std::size_t k = 1; k < chain.stops.size(); ++k) {
+      for (std::size_t p = 0; p < people; ++p) slot_[k][p] = chain.legs[k - 1].target_of[slot_[k - 1][p]];
     }
   }
 
-  /// The slower somebody is, the slower the track she gets, unless a list says who stands where. The limits are nested,
-  /// so that this order fits whenever any does.  @return false when somebody would have to walk too fast
+  /// The slower somebody is, the slower the track she gets, of those that people like her may have. The limits are
+  /// nested, so that this order fits whenever any does.  @return false when somebody would have to walk too fast
   bool give_slow_people_slow_tracks(const Chain& chain) {
     const std::size_t people = show_.performers.size();
     std::vector<double> fastest_mps(people, 0.0);
@@ -229,20 +200,19 @@ class ShowPlanner {
     }
     std::vector<std::size_t> track_of(people);
     std::iota(track_of.begin(), track_of.end(), std::size_t{0});
-    const bool named =
-        std::any_of(stations_.begin(), stations_.end(), [](const Station& station) { return station.pinned; });
     const auto limit = [&](std::size_t p) {
       const double own = show_.performers[p].max_speed_mps;
       return own > 0 ? own : std::numeric_limits<double>::infinity();
     };
-    if (!named) {
-      std::vector<std::size_t> order = track_of;
-      std::vector<std::size_t> tracks = track_of;
-      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return limit(a) < limit(b); });
-      std::stable_sort(tracks.begin(), tracks.end(),
-                       [&](std::size_t a, std::size_t b) { return fastest_mps[a] < fastest_mps[b]; });
-      for (std::size_t n = 0; n < people; ++n) track_of[order[n]] = tracks[n];
-    }
+    std::vector<std::size_t> order = track_of;
+    std::vector<std::size_t> tracks = track_of;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(chain.alike[a], limit(a)) < std::pair(chain.alike[b], limit(b));
+    });
+    std::stable_sort(tracks.begin(), tracks.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(chain.alike[a], fastest_mps[a]) < std::pair(chain.alike[b], fastest_mps[b]);
+    });
+    for (std::size_t n = 0; n < people; ++n) track_of[order[n]] = tracks[n];
     for (std::size_t p = 0; p < people; ++p) {
       if (fastest_mps[track_of[p]] > limit(p)) return false;
     }
@@ -251,14 +221,6 @@ class ShowPlanner {
       for (std::size_t p = 0; p < people; ++p) slots[p] = before[track_of[p]];
     }
     return true;
-  }
-
-  [[nodiscard]] std::vector<std::uint32_t> slots_by_name(const Stop& stop, const Station& station) const {
-    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(show_.stage.grid.size()), 0);
-    for (std::uint32_t i = 0; i < stop.cells.size(); ++i) at_cell[stop.cells[i].at()] = i;
-    std::vector<std::uint32_t> slots;
-    for (const CellIndex cell : station.cells) slots.push_back(at_cell[cell.at()]);
-    return slots;
   }
 
   [[nodiscard]] CellIndex cell_of(const Chain& chain, std::size_t k, std::size_t performer) const {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "planner/casting.hpp"
+
 namespace footlight::planner {
 namespace {
 
@@ -42,12 +44,17 @@ std::vector<StandIn> stand_ins(const Show& show, const std::vector<std::vector<M
     worth.push_back(on_stage(show, tracks[p]));
     free.push_back(people[p].absent ? 0 : 1);
   }
+  const std::vector<char> bound = bound_groups(show);
+  const auto own_group = [&](const Performer& one) {
+    return one.group && bound[one.group->at()] != 0 ? one.group : std::nullopt;
+  };
   for (std::size_t a = 0; a < people.size(); ++a) {
     if (!people[a].absent) continue;
     StandIn& one = out.emplace_back(StandIn{PerformerIndex::of(a), {}, worth[a], {}, tracks[a].size()});
     const double pace_mps = fastest_mps(show.stage.grid, tracks[a]);
     const auto can_walk = [&](const Performer& who) {
       const bool fast_enough = who.max_speed_mps <= 0 || pace_mps <= who.max_speed_mps * (1 + kSpeedTolerance);
+      if (own_group(who) != own_group(people[a])) return false;
       return fast_enough && (wide_enough || who.radius_m <= people[a].radius_m);
     };
     Duration least = worth[a];

@@ -23,8 +23,9 @@ struct StandIn {
 };
 
 /// The fewest changes for the others: for each absent person, in order, whoever comes, stands in for nobody yet, can
-/// walk the track and is on stage least (the first of equals), if that is less than the track is on stage. Nobody else
-/// changes, and a track that never leaves the reserve needs nobody.
+/// walk the track, is of the same group where groups have places of their own, and is on stage least (the first of
+/// equals), if that is less than the track is on stage. Nobody else changes, and a track that never leaves the reserve
+/// needs nobody.
 /// @param tracks of everybody in the show, as if all of them came
 /// @param wide_enough every track keeps the distances of the widest people; else a taker is as narrow as the absent
 /// O(marks + absent x people)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/check.hpp"
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/shift.hpp"
@@ -31,6 +32,7 @@ class ChainBuilder {
         ways_(*task.ways),
         grid_(task.ways->grid()),
         stations_(*task.stations),
+        casting_(task.casting != nullptr ? *task.casting : kFree),
         reserve_(static_cast<std::size_t>(grid_.size()), 0) {
     for (const CellIndex cell : task.show->stage.reserve) reserve_[cell.at()] = 1;
     StageHash floor("floor");
@@ -44,14 +46,27 @@ class ChainBuilder {
     follow_slots();
     for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
     if (!pace() || !mend()) return std::nullopt;
+    name_people();
     return std::move(chain_);
   }
 
  private:
   bool pair_all() {
     pairings_.resize(stations_.size() - 1);
-    return for_each_index(pairings_.size(), "pairing", progress_,
-                          [&](std::size_t k) { pairings_[k] = recalled_pair(stations_[k], stations_[k + 1]); });
+    const std::vector<std::size_t> changing = changing_intervals(stations_, casting_);
+    const bool done = for_each_index(pairings_.size(), "pairing", progress_, [&](std::size_t k) {
+      if (std::binary_search(changing.begin(), changing.end(), k)) return;
+      pairings_[k] = recalled_pair(stations_[k], stations_[k + 1]);
+    });
+    if (!done || casting_.free()) return done;
+    const auto pair_one = [&](const Station& from, const Station& to) {
+      return progress_.stopped() ? numbers(from.cells.size()) : recalled_pair(from, to);
+    };
+    CastTracks tracks = cast_tracks(grid_, stations_, casting_, pair_one, std::move(pairings_));
+    pairings_ = std::move(tracks.pairing);
+    who_ = std::move(tracks.who);
+    kinds_ = exchange_kinds(casting_, stations_.front().cells.size(), stations_.size());
+    return !progress_.stopped();
   }
 
   [[nodiscard]] std::vector<std::uint32_t> recalled_pair(const Station& from, const Station& to) const {
@@ -59,7 +74,7 @@ class ChainBuilder {
     if (task_.counts == nullptr && task_.stages == nullptr) return pair(from, to);
     StageHash hash("pairing");
     hash.add(floor_).list(task_.show->stage.reserve).list(from.cells).list(to.cells);
-    hash.add(to.follows).add(from.pinned && to.pinned).add(options.model).add(options.layers).add(options.region_size);
+    hash.add(to.follows).add(options.model).add(options.layers).add(options.region_size);
     hash.add(options.region_variance_m2).add(options.cost);
     return recall(
         task_.stages, hash.key(), task_.counts == nullptr ? nullptr : &task_.counts->pairings,
@@ -71,10 +86,7 @@ class ChainBuilder {
   /// Who waits in the reserve before and after stays where she is; the others as the section asks for.
   [[nodiscard]] std::vector<std::uint32_t> pair(const Station& from, const Station& to) const {
     std::vector<std::uint32_t> target_of(from.cells.size());
-    if (to.follows || (from.pinned && to.pinned)) {
-      for (std::uint32_t i = 0; i < target_of.size(); ++i) target_of[i] = i;
-      return target_of;
-    }
+    if (to.follows) return numbers(target_of.size());
     constexpr std::uint32_t kNone = 0xFFFFFFFFU;
     std::vector<std::uint32_t> waiting(static_cast<std::size_t>(grid_.size()), kNone);
     for (std::uint32_t j = 0; j < to.cells.size(); ++j) {
@@ -118,8 +130,8 @@ class ChainBuilder {
         if (s > 0) at[slot] = pairings_[s - 1][at[slot]];
         slots_[s][slot] = stations_[s].cells[at[slot]];
       }
-      if (s > 0 && !stations_[s].exact) continue;
       place_of_[s] = at;
+      if (s > 0 && !stations_[s].exact) continue;
       std::iota(at.begin(), at.end(), 0U);
     }
   }
@@ -209,10 +221,20 @@ class ChainBuilder {
     return wait;
   }
 
-  /// Named people after named people: nobody may take another's place.
-  [[nodiscard]] bool both_named(std::size_t k) const {
-    const auto named = [&](const Stop& stop) { return stop.station && stations_[*stop.station].pinned; };
-    return named(chain_.stops[k]) && named(chain_.stops[k - 1]);
+  [[nodiscard]] bool renumbered(std::size_t s) const { return s == 0 || stations_[s].exact; }
+  /// Place in a station's list of a slot, as numbered from there on.
+  [[nodiscard]] std::uint32_t place_at(std::size_t s, std::uint32_t slot) const {
+    return renumbered(s) ? slot : place_of_[s][slot];
+  }
+  /// Who may exchange on the way to a stop: the kind of each slot.
+  [[nodiscard]] std::vector<std::uint32_t> kind_toward(std::size_t k) const {
+    const std::size_t interval = *chain_.stops[heading_of(k)].station - 1;
+    if (kinds_.empty() || kinds_[interval].empty()) return {};
+    std::vector<std::uint32_t> kind(chain_.stops[k].own.size());
+    for (std::uint32_t slot = 0; slot < kind.size(); ++slot) {
+      kind[slot] = kinds_[interval][who_[interval][place_at(interval, slot)]];
+    }
+    return kind;
   }
   static std::vector<std::uint32_t> numbers(std::size_t size) {
     std::vector<std::uint32_t> out(size);
@@ -250,8 +272,8 @@ class ChainBuilder {
       task.walked_s = to_seconds(stop.arrive - chain_.stops[k - 1].depart);
       task.lag_s = to_seconds(task_.show->stage.lag);
       task.wait_s = stop.exact ? wait_s(stop.arrive) : 0;
-      const std::vector<std::uint32_t> names = both_named(k) ? numbers(stop.own.size()) : std::vector<std::uint32_t>();
-      task.kind = names;
+      const std::vector<std::uint32_t> kind = kind_toward(k);
+      task.kind = kind;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {
         for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];
@@ -367,6 +389,41 @@ class ChainBuilder {
     for (std::uint32_t& target : target_of) target = at_cell[cells[target].at()];
   }
 
+  /// Tracks of equal classes at every binding are those of people of the same classes, the first of the first.
+  void name_people() {
+    const std::size_t people = stations_.front().cells.size();
+    chain_.first_place = numbers(people);
+    chain_.alike.assign(people, 0);
+    if (casting_.free()) return;
+    Refinement of_kind;
+    std::vector<std::uint32_t> track(people, 0);  // class of the track from each first place so far
+    std::vector<std::uint32_t>& performer = chain_.alike;
+    for (std::size_t p = 0; p < people && !casting_.kind.empty(); ++p) performer[p] = of_kind.of(0, casting_.kind[p]);
+    for (std::size_t i = 0; i < people; ++i) track[i] = performer[who_[0][i]];
+    std::vector<std::uint32_t> slot = numbers(people);
+    for (std::size_t k = 0; k < chain_.stops.size(); ++k) {
+      if (k > 0) {
+        for (std::uint32_t& at : slot) at = chain_.legs[k - 1].target_of[at];
+      }
+      const auto station = chain_.stops[k].station;
+      if (!station || casting_.bindings.empty() || !casting_.bindings[*station].binds()) continue;
+      const std::vector<std::uint32_t>& person = casting_.bindings[*station].person;
+      Refinement refined;
+      for (std::size_t p = 0; p < people; ++p) performer[p] = refined.of(performer[p], person[p]);
+      for (std::size_t i = 0; i < people; ++i) {
+        track[i] = refined.of(track[i], person[who_[*station][place_at(*station, slot[i])]]);
+      }
+    }
+    std::vector<std::uint32_t> order = numbers(people);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return performer[a] < performer[b]; });
+    std::vector<std::uint32_t> tracks = numbers(people);
+    std::stable_sort(tracks.begin(), tracks.end(), [&](auto a, auto b) { return track[a] < track[b]; });
+    for (std::size_t n = 0; n < people; ++n) {
+      FL_CHECK(performer[order[n]] == track[tracks[n]]);
+      chain_.first_place[order[n]] = tracks[n];
+    }
+  }
+
   /// Everybody uses the time that is left evenly.
   void aim_on_the_way(std::size_t k, std::size_t goal, std::vector<Wanted>& wanted) const {
     const Stop& before = chain_.stops[k - 1];
@@ -385,10 +442,14 @@ class ChainBuilder {
   const Ways& ways_;
   const Grid& grid_;
   const std::vector<Station>& stations_;
+  static inline const Casting kFree{};
+  const Casting& casting_;
   CellFlags reserve_;
   std::vector<std::vector<std::uint32_t>> pairings_;
   std::vector<std::vector<CellIndex>> slots_;
-  std::vector<std::vector<std::uint32_t>> place_of_;  // of exact stations: place in the list of each slot before it
+  std::vector<std::vector<std::uint32_t>> place_of_;  // of each station: place in its list of each slot before it
+  std::vector<std::vector<std::uint32_t>> who_;       // performer on each place of each station as drawn; may be empty
+  std::vector<std::vector<std::uint32_t>> kinds_;     // of each performer in each interval between stations
   StageKey floor_{};
   Chain chain_;
 };

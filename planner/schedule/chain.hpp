@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planner/plan_section.hpp"
+#include "planner/schedule/cast_tracks.hpp"
 #include "planner/schedule/walks.hpp"
 #include "planner/stages.hpp"
 
@@ -15,8 +16,9 @@ struct ChainTask {
   const Show* show = nullptr;
   const Ways* ways = nullptr;
   const std::vector<Station>* stations = nullptr;
-  double clearance_m = 0.5;  ///< that holds for every two people
-  Stages* stages = nullptr;  ///< of an earlier planning; nothing: all of it is planned anew
+  const Casting* casting = nullptr;  ///< nothing: anybody may stand anywhere
+  double clearance_m = 0.5;          ///< that holds for every two people
+  Stages* stages = nullptr;          ///< of an earlier planning; nothing: all of it is planned anew
   struct Counts {
     StageCount pairings;
     StageCount walks;
@@ -42,8 +44,10 @@ struct Stop {
 /// Who goes where: position 0.. in `cells` of one stop -> position in `cells` of the next.
 struct Chain {
   std::vector<Stop> stops;
-  std::vector<Leg> legs;          ///< one less than stops
-  std::vector<double> longest_m;  ///< for each leg, how far anybody may walk
+  std::vector<Leg> legs;                   ///< one less than stops
+  std::vector<double> longest_m;           ///< for each leg, how far anybody may walk
+  std::vector<std::uint32_t> first_place;  ///< of each performer in the first stop's `cells`
+  std::vector<std::uint32_t> alike;  ///< of each performer: people with equal numbers may have each other's tracks
 
   /// When somebody walks from stop `leg` to the next; the others of the leg may walk at other times.
   struct WalkTimes {
@@ -53,9 +57,10 @@ struct Chain {
   [[nodiscard]] WalkTimes walk_times(std::size_t leg, std::uint32_t slot) const;
 };
 
-/// From formations to walks: ideal pairings of neighbours (parallel), slots from each exact formation to the next,
-/// pace, snap, and for each interval the final pairing; stretches between exact formations are independent (parallel).
-/// Targets of a pinned station are exchanged like any other; `plan_show` puts the named people on them.
+/// From formations to walks: ideal pairings of neighbours (parallel where nobody is bound), slots from each exact
+/// formation to the next, pace, snap, and for each interval the final pairing, in which people of one kind may take
+/// each other's targets; stretches between exact formations are independent (parallel). At the end people are named so
+/// that every binding is kept.
 /// @return nothing when stopped. Byte-equal for any number of threads.
 [[nodiscard]] std::optional<Chain> walk_through(const ChainTask& task, const Progress& progress);
 

@@ -57,7 +57,7 @@ class OneTransition {
   /// The transition, and a few after it, with so many counts more.
   [[nodiscard]] std::optional<MoveFigures> solve(double more_counts, const Progress& progress) const {
     const std::vector<Station> stations = stations_with(more_counts);
-    const auto chain = walk_through({&limits_, &drawn_.ways(), &stations, plan_.stage.clearance_m}, progress);
+    const auto chain = walk_through({&limits_, &drawn_.ways(), &stations, nullptr, plan_.stage.clearance_m}, progress);
     if (!chain) return std::nullopt;
     return figures(plan_from(*chain, stations), stations[0].depart, stations[1].arrive);
   }
