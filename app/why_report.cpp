@@ -148,6 +148,44 @@ std::string table_of_moves(const Show& show, const Plan& plan, const WhyAnswer& 
   return table.to_text();
 }
 
+/// What the show file asks for by name, by group or by hand: kind and sentence.
+std::vector<std::pair<std::string, std::string>> given_by_the_show(const Show& show, const Plan& plan,
+                                                                   const Move& move) {
+  std::vector<std::pair<std::string, std::string>> out;
+  const std::string to = place(plan, move.to);
+  const std::string group =
+      move.group ? "the group '" + show.groups[move.group->at()].name + "'" : "who is in no group";
+  switch (move.bound) {
+    case Move::Bound::nothing:
+      break;
+    case Move::Bound::list:
+      out.emplace_back("pin", to + " is given by the show's list of cells: nobody else can take it");
+      break;
+    case Move::Bound::pin:
+      out.emplace_back("pin", *move.pinned_to == move.to
+                                  ? to + " is given to this performer by name: nobody else can take it"
+                                  : place(plan, *move.pinned_to) + " is given to this performer by name, and is not " +
+                                        "reached in time");
+      break;
+    case Move::Bound::group_in_list:
+      out.emplace_back("group", to + " is a place of " + group + " in the show's list of cells");
+      break;
+    case Move::Bound::region:
+      out.emplace_back("group", "places in its regions are kept for " + group + ", and its people for them");
+      break;
+    case Move::Bound::group:
+      out.emplace_back("group", "nobody else takes a place of " + group + " (exchange: false)");
+      break;
+  }
+  if (move.exact && move.bound != Move::Bound::list)
+    out.emplace_back("key", "the formation is exact: nobody may be elsewhere, however far it is");
+  if (move.moved > 0) {
+    out.emplace_back("hand", fmt::format("{} {} placed by hand in this formation", move.moved,
+                                         move.moved == 1 ? "person is" : "people are"));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<MoveLimit> limits_of(const Show& show, const Plan& plan, const planner::Move& move) {
@@ -163,11 +201,7 @@ std::vector<MoveLimit> limits_of(const Show& show, const Plan& plan, const plann
   if (move.free_place) limits.push_back(drawing_limit(show, plan, move));
   std::stable_sort(limits.begin(), limits.end(),
                    [](const MoveLimit& a, const MoveLimit& b) { return a.used.value_or(0) > b.used.value_or(0); });
-  if (move.place_is_given) {
-    limits.push_back(
-        {"pin", std::nullopt,
-         fmt::format("{} is given by the show's list of cells: nobody else can take it", place(plan, move.to))});
-  }
+  for (const auto& [kind, text] : given_by_the_show(show, plan, move)) limits.push_back({kind, std::nullopt, text});
   return limits;
 }
 

@@ -14,7 +14,7 @@ namespace footlight::app {
 
 /// What limits a move: how much of the limit is used, and a sentence.
 struct MoveLimit {
-  std::string kind;            ///< pace, neighbour, lag, blocked, drawing, pin
+  std::string kind;            ///< pace, neighbour, lag, blocked, drawing, pin, group, key, hand
   std::optional<double> used;  ///< share of the limit, 1: all of it; absent where there is nothing to measure
   std::string text;
 };

@@ -199,7 +199,9 @@ class PictureSection {
     std::vector<KeyFrame> given;
     if (auto error = find_given(time, given)) return error;
     const double walk_s = grid_.pitch_m() / section_speed(show_, section_);
-    if (section_.planner.model == PlannerModel::joint) {
+    if (section_.planner.model == PlannerModel::joint && !section_.regions.empty()) {
+      why_not_ = "groups are bound to regions";
+    } else if (section_.planner.model == PlannerModel::joint) {
       auto instants = walking_instants(film_, time, section_.sampling.snap_to_count, kJointInterval * walk_s);
       jointly_ = can_plan_jointly(grid_, instants.size());
       if (jointly_) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/check.hpp"
+#include "planner/by_hand.hpp"
 #include "planner/formation/summed_area.hpp"
 
 namespace footlight::planner {
@@ -26,25 +27,72 @@ std::vector<Mark> way_of(const std::vector<Mark>& track, Instant start, Instant 
   return way;
 }
 
-Drawn::Drawn(const Show& show, const Plan& plan, const std::optional<Film>& film, SectionIndex section)
+Show show_of_those_who_come(const Show& show, const Plan& plan) {
+  Show present = show;
+  constexpr std::uint32_t kAway = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> number(show.performers.size(), kAway);
+  present.performers.clear();
+  for (std::size_t p = 0; p < show.performers.size(); ++p) {
+    const std::size_t next = present.performers.size();
+    if (next == plan.performers.size() || plan.performers[next] != show.performers[p].id) continue;
+    number[p] = static_cast<std::uint32_t>(next);
+    present.performers.push_back(show.performers[p]);
+  }
+  FL_CHECK(present.performers.size() == plan.tracks.size());
+  for (const Formation& formation : plan.formations) {
+    auto* list = std::get_if<CellsSource>(&present.sections[formation.section.at()].from);
+    if (list == nullptr) continue;
+    list->cells = formation.cells;
+    if (list->groups.empty()) continue;
+    list->groups.clear();
+    for (const Performer& performer : present.performers) list->groups.push_back(performer.group);
+  }
+  for (Section& section : present.sections) {
+    for (Override& hand : section.overrides) {
+      std::erase_if(hand.pin, [&](const Override::Pin& pin) { return number[pin.performer.at()] == kAway; });
+      for (Override::Pin& pin : hand.pin) pin.performer = PerformerIndex(number[pin.performer.at()]);
+    }
+  }
+  return present;
+}
+
+Drawn::Drawn(const Show& present, const Plan& plan, const std::optional<Film>& film, SectionIndex section)
     : plan_(plan), section_(section), grid_(plan.stage.grid), ways_(plan.stage, plan.stage.clearance_m / 2) {
   usable_ = ways_.standable();
   for (const CellIndex cell : plan.sections[section.at()].reserve) {
     if (usable_[cell.at()] != 0) reserve_.push_back(cell);
     usable_[cell.at()] = 0;
   }
-  const auto* listed = std::get_if<CellsSource>(&show.sections[section.at()].from);
+  const Section& asked = present.sections[section.at()];
+  const auto* listed = std::get_if<CellsSource>(&asked.from);
   for (std::size_t k = 0; k < plan.formations.size(); ++k) {
-    if (plan.formations[k].section != section) continue;
-    if (cells_.empty()) first_ = k;
-    cells_.push_back(listed != nullptr ? listed->cells : drawing(plan.formations[k], film));
+    const Formation& at = plan.formations[k];
+    if (at.section != section) continue;
+    if (stations_.empty()) first_ = k;
+    Station& station = stations_.emplace_back();
+    station.section = section;
+    station.count = at.count;
+    station.frame = at.frame;
+    station.arrive = station.depart = at.time;
+    station.cells = listed != nullptr ? listed->cells : drawing(at, film);
+    station.pinned = listed != nullptr && listed->assigned;
+    station.key = at.key;
+    station.exact = !at.frame || stations_.size() == 1 || (at.key && !asked.keys.empty());
   }
   if (listed == nullptr) add_waiting();
+  change_by_hand(present);
+}
+
+void Drawn::change_by_hand(const Show& present) {
+  SectionPlan drawn;
+  drawn.stations = stations_;
+  // Where somebody who does not come would have been moved there may be nobody to move.
+  if (!apply_overrides(present, section_, ways_, drawn)) stations_ = std::move(drawn.stations);
 }
 
 CellFlags Drawn::places(std::size_t number) const {
   CellFlags flags(static_cast<std::size_t>(grid_.size()), 0);
-  for (const CellIndex cell : cells_[number]) flags[cell.at()] = 1;
+  for (const CellIndex cell : stations_[number].cells) flags[cell.at()] = 1;
   for (const CellIndex cell : plan_.sections[section_.at()].reserve) flags[cell.at()] = 0;
   return flags;
 }
@@ -68,8 +116,8 @@ std::vector<CellIndex> Drawn::drawing(const Formation& at, const std::optional<F
 
 void Drawn::add_waiting() {
   const auto waiting = waiting_places({&grid_, &reserve_, &drawings_, static_cast<int>(plan_.tracks.size())});
-  for (std::size_t n = 0; n < cells_.size(); ++n) {
-    cells_[n].insert(cells_[n].end(), waiting[n].begin(), waiting[n].end());
+  for (std::size_t n = 0; n < stations_.size(); ++n) {
+    stations_[n].cells.insert(stations_[n].cells.end(), waiting[n].begin(), waiting[n].end());
   }
 }
 

@@ -30,8 +30,8 @@ Plan plan_of_two(const Plan& plan, std::uint32_t a, std::uint32_t b) {
 
 class Explainer {
  public:
-  Explainer(const Show& show, const Plan& plan, PerformerIndex who, FormationIndex into)
-      : show_(show), plan_(plan), who_(who), section_(plan.formations[into.at()].section) {
+  Explainer(const Show& show, const Plan& plan, const Drawn& drawn, PerformerIndex who, FormationIndex into)
+      : show_(show), plan_(plan), drawn_(drawn), who_(who), section_(plan.formations[into.at()].section) {
     FL_CHECK(who.at() < plan.tracks.size());
     move_.into = into;
     move_.start = start_of_move(plan, into);
@@ -44,7 +44,7 @@ class Explainer {
     neighbours();
     blocked_cells();
     const Section& section = show_.sections[section_.at()];
-    if (const auto* cells = std::get_if<CellsSource>(&section.from)) move_.place_is_given = cells->assigned;
+    bindings(section);
     move_.film_sets_time =
         std::holds_alternative<VideoSource>(section.from) && plan_.formations[move_.into.at() - 1].section == section_;
     return move_;
@@ -62,6 +62,32 @@ class Explainer {
       move_.walk_m += walk_m;
       move_.fastest_mps = std::max(move_.fastest_mps, walk_m / to_seconds(way_[k].time - way_[k - 1].time));
     }
+  }
+
+  /// Names bind before groups do.
+  void bindings(const Section& section) {
+    const Station& station = drawn_.station(drawn_.number_of(move_.into));
+    move_.exact = station.exact;
+    move_.moved = station.moved;
+    const auto* list = std::get_if<CellsSource>(&section.from);
+    for (const auto& [performer, cell] : station.pins) {
+      if (performer == who_) move_.pinned_to = cell;
+    }
+    const auto& group = show_.performers[who_.at()].group;
+    const bool in_region = group && std::any_of(section.regions.begin(), section.regions.end(),
+                                                [&](const Region& region) { return region.group == *group; });
+    if (station.pinned) {
+      move_.bound = Move::Bound::list;
+    } else if (move_.pinned_to) {
+      move_.bound = Move::Bound::pin;
+    } else if (list != nullptr && !list->groups.empty()) {
+      move_.bound = Move::Bound::group_in_list;
+    } else if (in_region) {
+      move_.bound = Move::Bound::region;
+    } else if (group && !show_.groups[group->at()].exchange) {
+      move_.bound = Move::Bound::group;
+    }
+    move_.group = group;
   }
 
   void limit() {
@@ -127,6 +153,7 @@ class Explainer {
 
   const Show& show_;
   const Plan& plan_;
+  const Drawn& drawn_;
   PerformerIndex who_;
   SectionIndex section_;
   std::vector<Mark> way_;
@@ -153,12 +180,13 @@ std::optional<Move::FreePlace> free_place(const Plan& plan, const CellFlags& pla
 std::vector<Move> explain_moves(const Show& show, const Plan& plan, const std::optional<Film>& film, PerformerIndex who,
                                 FormationIndex first, FormationIndex last) {
   FL_CHECK(first.at() > 0 && last.at() < plan.formations.size());
-  const Drawn drawn(show, plan, film, plan.formations[first.at()].section);
+  const Show present = show_of_those_who_come(show, plan);
+  const Drawn drawn(present, plan, film, plan.formations[first.at()].section);
   std::vector<Move> moves;
   for (std::size_t k = first.at(); k <= last.at(); ++k) {
     const FormationIndex into = FormationIndex::of(k);
     FL_CHECK(plan.formations[k].section == plan.formations[first.at()].section);
-    moves.push_back(Explainer(show, plan, who, into).run());
+    moves.push_back(Explainer(present, plan, drawn, who, into).run());
     moves.back().free_place = free_place(plan, drawn.places(drawn.number_of(into)), moves.back());
   }
   return moves;

@@ -43,7 +43,13 @@ struct Move {
     double least_m = 0;
   };
   std::optional<BlockedCell> blocked;  ///< the one nearest to her way, where it is no more than a pitch from the limit
-  bool place_is_given = false;         ///< a list of cells says where she stands
+  /// What keeps others off her place there, or her off theirs.
+  enum class Bound { nothing, list, pin, group_in_list, region, group };
+  Bound bound = Bound::nothing;
+  std::optional<GroupIndex> group;     ///< hers, where that is what binds her
+  std::optional<CellIndex> pinned_to;  ///< by hand, though the walk may not reach it
+  bool exact = false;                  ///< nobody may be elsewhere in the formation
+  int moved = 0;                       ///< people in it whom the director put elsewhere by hand
 
   /// A free place of the drawing when she stands on none: the nearest to where she came from.
   struct FreePlace {

@@ -2,8 +2,10 @@
 #include "planner/why/one_more_count.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/check.hpp"
+#include "planner/casting.hpp"
 #include "planner/judge/approach.hpp"
 #include "planner/schedule/chain.hpp"
 #include "planner/validate.hpp"
@@ -55,44 +57,45 @@ class OneTransition {
   }
 
   /// The transition, and a few after it, with so many counts more.
-  [[nodiscard]] std::optional<MoveFigures> solve(double more_counts, const Progress& progress) const {
+  [[nodiscard]] Result<MoveFigures> solve(double more_counts, const Progress& progress) const {
     const std::vector<Station> stations = stations_with(more_counts);
-    const auto chain = walk_through({&limits_, &drawn_.ways(), &stations, nullptr, plan_.stage.clearance_m}, progress);
-    if (!chain) return std::nullopt;
-    return figures(plan_from(*chain, stations), stations[0].depart, stations[1].arrive);
+    auto casting = casting_of(limits_, stations);
+    if (!casting) return casting.error();
+    // Everybody is somebody already, where she stands now.
+    casting->bindings.resize(stations.size());
+    Binding& here = casting->bindings.front();
+    here.person.resize(plan_.tracks.size());
+    std::iota(here.person.begin(), here.person.end(), 0U);
+    here.place = here.person;
+    const ChainTask task{&limits_, &drawn_.ways(), &stations, &*casting, plan_.stage.clearance_m};
+    const auto chain = walk_through(task, progress);
+    if (!chain) return Error{ErrorKind::interrupted, "stopped while solving a transition again"};
+    return figures(plan_from(*chain), stations[0].depart, stations[1].arrive);
   }
 
  private:
   [[nodiscard]] std::vector<Station> stations_with(double more_counts) const {
-    const Formation& goal = plan_.formations[into_.at()];
     Station here;
     here.section = plan_.formations[into_.at() - 1].section;
     here.arrive = here.depart = start_of_move(plan_, into_);
     here.count = show_.tempo.count_at(here.depart);
     here.cells = plan_.formations[into_.at() - 1].cells;
-    here.pinned = here.exact = true;
+    here.exact = true;
     std::vector<Station> stations{here};
-    const Section& section = show_.sections[goal.section.at()];
-    const auto* listed = std::get_if<CellsSource>(&section.from);
     const std::size_t first = drawn_.number_of(into_);
     for (std::size_t n = first; n < std::min(drawn_.formations(), first + 1 + kOnward); ++n) {
-      const Formation& at = plan_.formations[into_.at() + n - first];
-      Station station;
-      station.section = at.section;
-      station.frame = at.frame;
-      station.count = show_.tempo.count_at(at.time) + more_counts;
-      station.arrive = station.depart = show_.tempo.at(station.count);
-      if (more_counts == 0) station.arrive = station.depart = at.time;
-      station.cells = drawn_.cells(n);
-      station.pinned = listed != nullptr && listed->assigned;
-      station.exact = !at.frame || n == 0;
+      Station station = drawn_.station(n);
+      if (more_counts != 0) {
+        station.count = show_.tempo.count_at(station.arrive) + more_counts;
+        station.arrive = station.depart = show_.tempo.at(station.count);
+      }
       stations.push_back(std::move(station));
     }
     return stations;
   }
 
   /// A plan of these walks alone, people in the order of the show.
-  [[nodiscard]] Plan plan_from(const Chain& chain, const std::vector<Station>& stations) const {
+  [[nodiscard]] Plan plan_from(const Chain& chain) const {
     Plan out;
     out.stage = plan_.stage;
     out.performers = plan_.performers;
@@ -100,7 +103,7 @@ class OneTransition {
     out.max_speed_mps = plan_.max_speed_mps;
     out.tracks.resize(plan_.tracks.size());
     for (std::uint32_t p = 0; p < out.tracks.size(); ++p) {
-      std::uint32_t slot = p;
+      std::uint32_t slot = chain.first_place[p];
       for (std::size_t k = 0; k < chain.stops.size(); ++k) {
         const Stop& stop = chain.stops[k];
         Instant arrive = stop.arrive;
@@ -108,9 +111,7 @@ class OneTransition {
           arrive = chain.walk_times(k - 1, slot).end;
           slot = chain.legs[k - 1].target_of[slot];
         }
-        // A list of cells with names is in the order of the show.
-        const bool named = stop.station && stations[*stop.station].pinned;
-        const CellIndex cell = named ? stations[*stop.station].cells[p] : stop.cells[slot];
+        const CellIndex cell = stop.cells[slot];
         out.tracks[p].push_back({arrive, cell});
         const Instant depart = k < chain.legs.size() ? chain.walk_times(k, slot).start : stop.depart;
         if (depart > arrive) out.tracks[p].push_back({depart, cell});
@@ -131,15 +132,17 @@ class OneTransition {
 
 Result<OneMoreCount> one_more_count(const Show& show, const Plan& plan, const std::optional<Film>& film,
                                     PerformerIndex who, FormationIndex into, const Progress& progress) {
-  const Drawn drawn(show, plan, film, plan.formations[into.at()].section);
-  const OneTransition transition(show, plan, drawn, who, into);
+  const Show present = show_of_those_who_come(show, plan);
+  const Drawn drawn(present, plan, film, plan.formations[into.at()].section);
+  const OneTransition transition(present, plan, drawn, who, into);
   OneMoreCount out;
   const CellFlags places = drawn.places(drawn.number_of(into));
   out.places = static_cast<int>(std::count(places.begin(), places.end(), 1));
   out.planned = transition.figures(plan, start_of_move(plan, into), plan.formations[into.at()].time);
   auto again = transition.solve(0, progress);
+  if (!again) return again.error();
   auto one_more = transition.solve(1, progress);
-  if (!again || !one_more) return Error{ErrorKind::interrupted, "stopped while solving a transition again"};
+  if (!one_more) return one_more.error();
   out.again = *again;
   out.one_more = *one_more;
   return out;

@@ -45,6 +45,36 @@ TEST(WhyReport, PutsTheTightestLimitFirstAndWhatCannotBeMeasuredLast) {
   EXPECT_FALSE(limits[3].used.has_value());
 }
 
+TEST(WhyReport, SaysWhatTheShowFileAsksForByNameGroupAndHand) {
+  HurriedShow made = tests::two_lists();
+  made.show.groups.push_back({"left", {}, false});
+  planner::Move move = move_of(made, 0);
+  move.exact = true;
+  move.moved = 2;
+  move.group = GroupIndex(0);
+  const auto told = [&](planner::Move::Bound bound) {
+    move.bound = bound;
+    std::vector<std::string> out;
+    for (const MoveLimit& limit : limits_of(made.show, made.plan, move)) {
+      if (!limit.used) out.push_back(limit.kind + ": " + limit.text);
+    }
+    return out;
+  };
+  const std::string key = "key: the formation is exact: nobody may be elsewhere, however far it is";
+  const std::string hand = "hand: 2 people are placed by hand in this formation";
+  using Bound = planner::Move::Bound;
+  EXPECT_EQ(told(Bound::nothing), (std::vector<std::string>{key, hand}));
+  move.pinned_to = move.to;
+  EXPECT_EQ(told(Bound::pin), (std::vector<std::string>{
+                                  "pin: C1 is given to this performer by name: nobody else can take it", key, hand}));
+  move.pinned_to = made.show.stage.grid.index({3, 0});
+  EXPECT_EQ(told(Bound::pin).front(), "pin: D1 is given to this performer by name, and is not reached in time");
+  EXPECT_EQ(told(Bound::group_in_list).front(), "group: C1 is a place of the group 'left' in the show's list of cells");
+  EXPECT_EQ(told(Bound::region).front(),
+            "group: places in its regions are kept for the group 'left', and its people for them");
+  EXPECT_EQ(told(Bound::group).front(), "group: nobody else takes a place of the group 'left' (exchange: false)");
+}
+
 TEST(WhyReport, SaysWhoseLimitAndWhoseTimeItIs) {
   HurriedShow made = tests::two_lists();
   planner::Move move = move_of(made, 0);

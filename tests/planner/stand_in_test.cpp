@@ -203,6 +203,21 @@ TEST(StandIns, WhoIsTooSlowOrTooWideDoesNotStandIn) {
   EXPECT_EQ(all.takers(false), Takers{PerformerIndex(2)});
 }
 
+TEST(StandIns, StayInTheirGroupWhereGroupsHavePlacesOfTheirOwn) {
+  ByHandTracks all;
+  all.away({0});
+  all.show.groups = {{"left", {}, true}, {"right", {}, true}};
+  all.show.performers[0].group = GroupIndex(0);
+  all.show.performers[2].group = GroupIndex(1);
+  EXPECT_EQ(all.takers(), Takers{PerformerIndex(2)}) << "groups are colours alone";
+  all.show.groups[1].exchange = false;
+  EXPECT_EQ(all.takers(), Takers{PerformerIndex(3)}) << "2's group keeps its own places, the absent one's has none";
+  all.show.groups[0].exchange = false;
+  EXPECT_EQ(all.takers(), Takers{std::nullopt});
+  all.show.performers[1].group = GroupIndex(0);
+  EXPECT_EQ(all.takers(), Takers{PerformerIndex(1)});
+}
+
 TEST(StandIns, WhoGivesUpAPlaceOfHerOwnIsToldOf) {
   ByHandTracks all;
   all.away({0, 2, 3});

@@ -26,7 +26,7 @@ TEST(ExplainMoves, NamesTheWalkItsTimeAndWhoseLimitHolds) {
   EXPECT_EQ(move.whose_limit, Move::SpeedLimit::stage);
   EXPECT_DOUBLE_EQ(move.limit_mps, 1.4);
   EXPECT_FALSE(move.film_sets_time);
-  EXPECT_TRUE(move.place_is_given);
+  EXPECT_EQ(move.bound, Move::Bound::list);
   EXPECT_FALSE(move.free_place.has_value());
 }
 
@@ -116,6 +116,33 @@ TEST(ExplainMoves, WorksForOnePerformerAlone) {
       explain_moves(made.show, made.plan, {}, PerformerIndex(0), FormationIndex(1), FormationIndex(1)).front();
   EXPECT_FALSE(move.nearest.has_value());
   EXPECT_DOUBLE_EQ(move.tolerated_lag_s, 2);
+}
+
+TEST(ExplainMoves, NamesWhatKeepsOthersOffHerPlace) {
+  HurriedShow made = tests::two_lists();
+  made.show.groups.push_back({"left", {}, false});
+  made.show.performers[1].group = GroupIndex(0);
+  auto& there = std::get<CellsSource>(made.show.sections[1].from);
+  there.assigned = false;
+  Override hand;
+  hand.number = 1;
+  hand.pin = {{PerformerIndex(2), there.cells[2], {}}};
+  made.show.sections[1].overrides = {hand};
+  const auto bound = [&](std::uint32_t who) {
+    return explain_moves(made.show, made.plan, {}, PerformerIndex(who), FormationIndex(1), FormationIndex(1)).front();
+  };
+  EXPECT_EQ(bound(0).bound, Move::Bound::nothing);
+  EXPECT_EQ(bound(1).bound, Move::Bound::group);
+  EXPECT_EQ(bound(1).group, GroupIndex(0));
+  EXPECT_EQ(bound(2).bound, Move::Bound::pin);
+  EXPECT_EQ(bound(2).pinned_to, there.cells[2]);
+  EXPECT_TRUE(bound(2).exact);
+  there.groups = {std::nullopt, GroupIndex(0), std::nullopt};
+  EXPECT_EQ(bound(1).bound, Move::Bound::group_in_list);
+  there.groups.clear();
+  made.show.sections[1].regions.push_back({GroupIndex(0), {there.cells[1]}, {}});
+  EXPECT_EQ(bound(1).bound, Move::Bound::region);
+  EXPECT_EQ(bound(0).bound, Move::Bound::nothing);
 }
 
 }  // namespace

@@ -78,5 +78,18 @@ TEST(OneMoreCount, CanBeInterrupted) {
   EXPECT_EQ(found.error().kind, ErrorKind::interrupted);
 }
 
+TEST(OneMoreCount, NamedPeopleGoToTheirOwnPlacesAgainThoughSomebodyIsAway) {
+  // Three people by name; the second does not come and nobody stands in: without a reserve the place stays empty.
+  HurriedShow made = tests::two_lists();
+  made.show.performers[1].absent = true;
+  made.plan = plan_show(made.show, {std::nullopt, std::nullopt}).value().plan;
+  ASSERT_EQ(made.plan.performers, (std::vector<std::string>{"1", "3"}));
+  const auto found = one_more_count(made.show, made.plan, {}, PerformerIndex(0), FormationIndex(1), {}).value();
+  EXPECT_EQ(found.places, 2);
+  EXPECT_EQ(found.again.to, made.show.stage.grid.index({2, 0}));
+  EXPECT_EQ(found.again.places_reached, 2);
+  EXPECT_DOUBLE_EQ(found.again.total_walk_m, 2);
+}
+
 }  // namespace
 }  // namespace footlight::planner
