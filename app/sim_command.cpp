@@ -160,7 +160,8 @@ Status<> write_map(Session& session, const Options& options, const config::Loade
   std::vector<config::BusTransport> transports;
   for (const auto& one : served.served()) transports.push_back({one.bus, one.url});
   auto written = config::write_file(
-      options.map, config::transport_map_text(transports, "where `footlight sim` serves the markers of " + options.show));
+      options.map,
+      config::transport_map_text(transports, "where `footlight sim` serves the markers of " + options.show));
   if (written) session.note("footlight run " + options.show + " --transport-map " + options.map + " plays to them");
   return written;
 }
@@ -203,9 +204,11 @@ void add_sim_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--write-map", options->map, "write where the buses are, for `footlight run --transport-map`");
   session.add_options(*command, true);
   command->footer(
-      "Serial and Modbus RTU buses are pseudo-terminals behind links in --dir, Modbus TCP buses gateways on 127.0.0.1.\n"
+      "Serial and Modbus RTU buses are pseudo-terminals behind links in --dir, Modbus TCP buses gateways on "
+      "127.0.0.1.\n"
       "Every byte takes the time that it takes on the wire. A terminal shows the floor, upstage at the top; --json\n"
-      "prints where the buses are, then a line for each lamp that changes, at the end the whole floor. SIGINT ends it.\n\n"
+      "prints where the buses are, then a line for each lamp that changes, at the end the whole floor. SIGINT ends "
+      "it.\n\n"
       "Examples:\n  footlight sim show.yaml --write-map map.yaml\n"
       "  footlight run show.yaml --transport-map map.yaml\n"
       "  mbpoll -m rtu -b 115200 -P even -a 1 -0 -r 64 -c 6 /tmp/footlight-0/stage-left\n");

@@ -466,7 +466,8 @@ const Listing& show_listing() {
            .type = Type::choice,
            .doc =
                "How people go from one formation to the next. `straight`: each in a line at constant speed. `cells`: "
-               "over neighbouring cells, one cell a count, on whole counts.",
+               "over neighbouring cells, one cell a count, on whole counts; every second, third count where one is too "
+               "short.",
            .fallback = "straight",
            .choices = {"straight", "cells"}},
           {.key = "performers",

@@ -23,16 +23,19 @@ const Listing& transport_listing() {
 }
 
 const Listing& map_listing() {
-  static const Listing kListing{
-      "transports.yaml",
-      "Where the buses of a rig are found here and today.",
-      {{.key = "transports", .type = Type::integer, .doc = "Version of this format.", .required = true, .range = {1, 1}},
-       {.key = "buses",
-        .type = Type::mapping,
-        .doc = "Those that are elsewhere than the rig says.",
-        .required = true,
-        .listing = &transport_listing(),
-        .list = true}}};
+  static const Listing kListing{"transports.yaml",
+                                "Where the buses of a rig are found here and today.",
+                                {{.key = "transports",
+                                  .type = Type::integer,
+                                  .doc = "Version of this format.",
+                                  .required = true,
+                                  .range = {1, 1}},
+                                 {.key = "buses",
+                                  .type = Type::mapping,
+                                  .doc = "Those that are elsewhere than the rig says.",
+                                  .required = true,
+                                  .listing = &transport_listing(),
+                                  .list = true}}};
   return kListing;
 }
 

@@ -13,6 +13,7 @@
 #include "planner/plan_section.hpp"
 #include "planner/proof.hpp"
 #include "planner/refusal.hpp"
+#include "planner/schedule/beats.hpp"
 #include "planner/schedule/chain.hpp"
 #include "planner/section_stage.hpp"
 #include "planner/shortest.hpp"
@@ -65,7 +66,6 @@ class ShowPlanner {
     std::optional<Chain> chain;
     for (;;) {
       if (auto error = collect_stations(ways)) return *error;
-      if (auto error = not_planned()) return *error;
       auto casting = casting_of(show_, stations_);
       if (!casting) return casting.error();
       chain = walk_through({&limits_, &ways, &stations_, &*casting, clearance_m_, reuse_.stages, &counts_}, progress_);
@@ -83,6 +83,7 @@ class ShowPlanner {
     write_formations(*chain);
     note_what_gave_way(*chain);
     note_wide_people();
+    note_steps();
     if (slow_for_all_) {
       planned_.plan.sections.front().notes.push_back(
           "everybody walks as slowly as the slowest: no tracks are slow enough for those with limits of their own");
@@ -126,12 +127,6 @@ class ShowPlanner {
       planned_.plan.sections.push_back(std::move(section->section));
     }
     return std::nullopt;
-  }
-
-  /// What a show may ask for and no plan keeps yet: better refused than left out in silence.
-  [[nodiscard]] std::optional<Error> not_planned() const {
-    if (show_.stage.walk != WalkKind::cells) return std::nullopt;
-    return input_error(show_.file + ": error: walk: cells cannot be planned by this version (leave it out)");
   }
 
   /// Formations of a section that were planned before, without the film; else anew.
@@ -323,6 +318,21 @@ class ShowPlanner {
           "{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: everybody "
           "is planned that far apart, and many may have to wait",
           widest_two(), widest_two_m(), bound_m));
+    }
+  }
+
+  /// Over cells, where a step cannot be as short as a count.
+  void note_steps() {
+    if (show_.stage.walk != WalkKind::cells) return;
+    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
+      const PlanSection& section = planned_.plan.sections[s];
+      const Instant before = s > 0 ? planned_.plan.sections[s - 1].end : kStart;
+      const double speed_mps = section_speed(limits_, show_.sections[s]);
+      const Beats beats = beats_between(show_.tempo, before, section.end, show_.stage.grid.pitch_m() / speed_mps);
+      if (beats.counts == 1) continue;
+      planned_.plan.sections[s].notes.push_back(fmt::format(
+          "a step from cell to cell takes {} counts, since one of {:.3g} s is too short for {:g} m at {:g} m/s",
+          beats.counts, beats.step_s / beats.counts, show_.stage.grid.pitch_m(), speed_mps));
     }
   }
 

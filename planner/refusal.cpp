@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "planner/schedule/beats.hpp"
+
 namespace footlight::planner {
 namespace {
 
@@ -58,7 +60,36 @@ const Formation* key_inside(const Plan& plan, std::size_t section, const FastWal
   return nullptr;
 }
 
+/// Over cells too many steps have been laid evenly into the time there is for them.
+std::string too_many_steps_text(const Show& show, const Plan& plan, std::size_t section, const FastWalk& walk) {
+  Instant depart = section > 0 ? plan.sections[section - 1].end : kStart;
+  const Formation* goal = nullptr;
+  for (const Formation& formation : plan.formations) {
+    if (formation.time >= walk.to.time) {
+      goal = &formation;
+      break;
+    }
+    depart = std::max(depart, formation.time);
+  }
+  FL_CHECK(goal != nullptr);
+  const double step_s = to_seconds(walk.to.time - walk.from.time);
+  const double steps = std::round(to_seconds(goal->time - depart) / step_s);
+  const Beats beats = beats_between(show.tempo, depart, goal->time, plan.stage.grid.pitch_m() / walk.limit_mps);
+  const double start = show.tempo.count_at(depart);
+  const double needed = std::ceil(start - 1e-6) + steps * beats.counts - start;
+  const double given = show.tempo.count_at(goal->time) - start;
+  const double later = std::ceil(needed - given - 1e-6);
+  const std::string each = beats.counts == 1 ? "a count" : fmt::format("{} counts", beats.counts);
+  return section_message(
+      show, SectionIndex::of(section),
+      fmt::format("the formation {} at count {} cannot be reached over cells in time: it takes {:g} steps of {} each "
+                  "at {:g} m/s, and there are {} counts from count {}",
+                  goal->id, count_text(goal->count), steps, each, walk.limit_mps, count_text(given), count_text(start)),
+      fmt::format("{:g} count{} more before it, or walk: straight", later, later == 1 ? "" : "s"));
+}
+
 std::string too_fast_text(const Show& show, const Plan& plan, std::size_t section, const FastWalk& walk) {
+  if (plan.stage.walk == WalkKind::cells) return too_many_steps_text(show, plan, section, walk);
   const double first = show.tempo.count_at(walk.from.time);
   const double last = show.tempo.count_at(walk.to.time);
   const double needed_s = walk.walk_m / walk.limit_mps;

@@ -63,7 +63,7 @@ class PricedTargets {
     return finds_.hits();
   }
 
-  /// All targets that are not too far.
+  /// All targets that are not too far, and some that are a little farther.
   std::span<const Hit> within_reach(std::uint32_t source) {
     tree_.collect(
         {walks_.sources().search_x[source], walks_.sources().search_y[source], kInfinity, kInfinity, walks_.reach()},
@@ -164,30 +164,6 @@ Matching sample_match(const Walks& walks) {
   return auction(walks, targets, tuning(walks.metric()).sample_steps);
 }
 
-/// Every allowed walk.
-ArcRows all_allowed(const Walks& walks, PricedTargets& targets) {
-  ArcRows rows;
-  rows.first.reserve(walks.size() + 1);
-  for (std::uint32_t i = 0; i < walks.size(); ++i) {
-    for (const auto& hit : targets.within_reach(i)) {
-      if (walks.allowed(i, hit.target)) rows.add(hit.target, walks.cost(i, hit.target));
-    }
-    rows.close_row();
-  }
-  return rows;
-}
-
-/// Whether everybody can get a target at all: a largest matching, by phases without costs.
-bool has_perfect_matching(const ArcRows& rows) {
-  ArcRows free_of_charge{rows.first, rows.target, std::vector<Value>(rows.cost.size(), 0)};
-  Matching matching;
-  matching.price.assign(rows.size(), 0);
-  matching.target_of.assign(rows.size(), kNobody);
-  Phases phases(free_of_charge, matching, true);
-  phases.tighten();
-  return phases.run();
-}
-
 /// Targets outside of the reached ones, for everybody who was reached.
 std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets, const Matching& matching,
                                       const Phases& phases) {
@@ -195,11 +171,16 @@ std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets
   std::ranges::sort(sources);
   targets.fit(matching.price, phases.reached_targets());
   std::vector<ArcRows::NewArc> arcs;
-  for (const std::uint32_t i : sources) {
-    for (const auto& hit : targets.best(i, 4 * walks.spacing())) {
+  const auto take = [&](std::uint32_t i, std::span<const Hit> hits) {
+    for (const auto& hit : hits) {
       if (hit.value == kInfinity) continue;
       if (!walks.limited() || walks.allowed(i, hit.target)) arcs.push_back({i, hit.target, walks.cost(i, hit.target)});
     }
+  };
+  for (const std::uint32_t i : sources) take(i, targets.best(i, 4 * walks.spacing()));
+  // A search takes in a little more than the longest walk, which may hide what is allowed and dearer.
+  if (arcs.empty() && walks.limited()) {
+    for (const std::uint32_t i : sources) take(i, targets.within_reach(i));
   }
   return arcs;
 }
@@ -218,33 +199,21 @@ std::vector<ArcRows::NewArc> arcs_that_undercut(const Walks& walks, PricedTarget
   return arcs;
 }
 
-std::optional<Matching> finish_with_all(const Walks& walks, PricedTargets& targets, Matching matching);
-
-/// From prices and a matching that are nearly right to those that are.
-/// @param complete rows hold every allowed walk, so that what is cheapest among them is cheapest
-std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows,
-                               bool complete) {
+/// From prices and a matching that are nearly right to those that are. Sources that reach fewer targets than they are
+/// get arcs out of what they reach; when no allowed walk leads out of it there is no matching (Hall 1935).
+std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows) {
   Phases phases(rows, matching, walks.on_lattice());
   phases.tighten();
   while (true) {
     while (!phases.run()) {
-      if (complete) return std::nullopt;
-      if (walks.limited()) return finish_with_all(walks, targets, std::move(matching));
-      phases.add(arcs_out(walks, targets, matching, phases));
+      const auto arcs = arcs_out(walks, targets, matching, phases);
+      if (arcs.empty()) return std::nullopt;
+      phases.add(arcs);
     }
-    if (complete) return matching;
     const auto arcs = arcs_that_undercut(walks, targets, matching);
     if (arcs.empty()) return matching;
     phases.add(arcs);
   }
-}
-
-/// Where walks are so short that candidates do not do: whether there is any matching, and then the cheapest.
-std::optional<Matching> finish_with_all(const Walks& walks, PricedTargets& targets, Matching matching) {
-  targets.fit(matching.price);
-  ArcRows rows = all_allowed(walks, targets);
-  if (!has_perfect_matching(rows)) return std::nullopt;
-  return finish(walks, targets, std::move(matching), std::move(rows), true);
 }
 
 }  // namespace
@@ -260,12 +229,15 @@ std::optional<Matching> match_walks(const Walks& walks) {
   targets.fit(extend(walks, coarse, sample_match(coarse)));
   Matching matching = auction(walks, targets, tuning(walks.metric()).steps);
   if (walks.limited() && std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) {
-    return finish_with_all(walks, targets, std::move(matching));
+    // Where some have nothing left to bid for, prices rise out of all proportion: better those of unlimited walks.
+    const Walks unlimited = walks.unlimited();
+    targets.fit(extend(unlimited, coarse, sample_match(coarse)));
+    matching = auction(unlimited, targets, tuning(walks.metric()).steps);
   }
   targets.fit(matching.price);
   const auto margin = static_cast<Value>(tuning(walks.metric()).arc_margin * static_cast<double>(walks.spacing()));
   ArcRows rows = candidates(walks, targets, matching, margin);
-  return finish(walks, targets, std::move(matching), std::move(rows), false);
+  return finish(walks, targets, std::move(matching), std::move(rows));
 }
 
 }  // namespace footlight::planner::assignment

@@ -205,6 +205,13 @@ void Walks::measure_spacing() {
   spacing_ = std::max<Value>(1, nearest_value(spacing * scale_));
 }
 
+Walks Walks::unlimited() const {
+  Walks out = *this;
+  out.longest_m_ = std::numeric_limits<double>::infinity();
+  out.reach_ = std::numeric_limits<float>::infinity();
+  return out;
+}
+
 Walks Walks::fours() const {
   Walks coarse;
   coarse.metric_ = metric_;

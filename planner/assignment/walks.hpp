@@ -38,6 +38,8 @@ class Walks {
   /// The means of each four points of one side that follow each other in kd order, without a longest walk: the same
   /// formations, drawn with half as many points each way.
   [[nodiscard]] Walks fours() const;
+  /// The same without a longest walk.
+  [[nodiscard]] Walks unlimited() const;
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(sources_.x.size()); }
   [[nodiscard]] WalkCost metric() const { return metric_; }

@@ -8,6 +8,7 @@
 #include "core/check.hpp"
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/parallel.hpp"
+#include "planner/schedule/beats.hpp"
 #include "planner/schedule/shift.hpp"
 #include "planner/schedule/step.hpp"
 
@@ -23,6 +24,13 @@ constexpr double kWait_s = 0.6;
 /// Cell by cell around blocked cells: room in each step for the rounding of instants, and steps walked at once.
 constexpr double kStepMargin = 1.001;
 constexpr std::size_t kStride = 4;
+
+/// How far in a straight line somebody comes at least with a step over cells, in pitches: along a diagonal; between two
+/// of six directions; across the rows of triangles.
+double straight_per_step(GridKind kind) {
+  if (kind == GridKind::square) return std::sqrt(0.5);
+  return kind == GridKind::hexagonal ? std::sqrt(0.75) : 0.75;
+}
 
 class ChainBuilder {
  public:
@@ -45,7 +53,12 @@ class ChainBuilder {
     if (!pair_all()) return std::nullopt;
     follow_slots();
     for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
-    if (!pace() || !mend()) return std::nullopt;
+    if (!pace()) return std::nullopt;
+    if (over_cells()) {
+      stand_after_each_step();
+    } else if (!mend()) {
+      return std::nullopt;
+    }
     name_people();
     return std::move(chain_);
   }
@@ -138,7 +151,7 @@ class ChainBuilder {
 
   void add_stop(std::size_t s) {
     const Station& station = stations_[s];
-    if (s > 0) add_vias(s);
+    if (s > 0 && !over_cells()) add_vias(s);
     if (s > 0) link(station.section, station.arrive);
     Stop stop;
     stop.count = station.count;
@@ -155,9 +168,16 @@ class ChainBuilder {
   void link(SectionIndex section, Instant arrive) {
     const Show& show = *task_.show;
     const double speed = section_speed(show, show.sections[section.at()]);
-    const double walked_s = to_seconds(arrive - chain_.stops.back().depart);
-    chain_.longest_m.push_back(std::max(0.0, speed * walked_s - kRounding_m));
+    const Instant depart = chain_.stops.back().depart;
+    if (over_cells()) {
+      beats_.push_back(beats_between(show.tempo, depart, arrive, grid_.pitch_m() / speed));
+      chain_.longest_m.push_back(beats_.back().steps() * grid_.pitch_m());
+      return;
+    }
+    chain_.longest_m.push_back(std::max(0.0, speed * to_seconds(arrive - depart) - kRounding_m));
   }
+
+  [[nodiscard]] bool over_cells() const { return task_.show->stage.walk == WalkKind::cells; }
 
   /// Between two exact formations, where blocked cells are in somebody's way.
   void add_vias(std::size_t s) {
@@ -191,6 +211,7 @@ class ChainBuilder {
   /// Stretches between exact formations do not depend on each other.
   bool pace() {
     chain_.legs.resize(chain_.stops.size() - 1);
+    after_.resize(chain_.legs.size());
     std::vector<std::size_t> ends{0};
     for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
       if (chain_.stops[k].exact || k + 1 == chain_.stops.size()) ends.push_back(k);
@@ -251,6 +272,9 @@ class ChainBuilder {
       const double longest_m = instants[n].longest_m;
       reach_m[n] = n + 2 == instants.size() ? longest_m : reach_m[n + 1] + paced_m(longest_m, grid_.pitch_m());
     }
+    if (over_cells()) {
+      for (double& reach : reach_m) reach *= straight_per_step(grid_.kind());
+    }
     for (std::size_t k = first + 1; k <= last && !progress_.stopped(); ++k) {
       Stop& stop = chain_.stops[k];
       const std::size_t n = k - first;
@@ -272,6 +296,7 @@ class ChainBuilder {
       task.walked_s = to_seconds(stop.arrive - chain_.stops[k - 1].depart);
       task.lag_s = to_seconds(task_.show->stage.lag);
       task.wait_s = stop.exact ? wait_s(stop.arrive) : 0;
+      if (over_cells()) task.over_cells = {beats_[k - 1].steps(), beats_[k - 1].step_s};
       const std::vector<std::uint32_t> kind = kind_toward(k);
       task.kind = kind;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
@@ -284,7 +309,48 @@ class ChainBuilder {
         }
       }
       chain_.legs[k - 1] = std::move(step.leg);
+      after_[k - 1] = std::move(step.after);
     }
+  }
+
+  /// Over cells everybody stands on a cell after each step. Whoever is there before the time waits; an exact formation
+  /// that takes more steps than there is time for gets them all the same, too fast, for the refusal to tell how many.
+  void stand_after_each_step() {
+    Chain whole;
+    whole.stops.push_back(chain_.stops.front());
+    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
+      const auto& after = after_[k - 1];
+      const std::vector<Instant> times = times_of_steps(k, after.size());
+      if (!after.empty()) whole.stops.back().depart = times.front();
+      for (std::size_t n = 1; n < after.size(); ++n) {
+        Stop stop;
+        stop.arrive = stop.depart = times[n];
+        stop.count = task_.show->tempo.count_at(times[n]);
+        stop.section = chain_.stops[k].section;
+        stop.cells = after[n - 1];
+        whole.stops.push_back(std::move(stop));
+        whole.legs.emplace_back().target_of = numbers(after[n - 1].size());
+        whole.longest_m.push_back(grid_.pitch_m());
+      }
+      whole.stops.push_back(chain_.stops[k]);
+      if (!after.empty()) whole.stops.back().arrive = times.back();
+      whole.legs.push_back(std::move(chain_.legs[k - 1]));
+      whole.longest_m.push_back(after.empty() ? chain_.longest_m[k - 1] : grid_.pitch_m());
+    }
+    chain_ = std::move(whole);
+  }
+
+  [[nodiscard]] std::vector<Instant> times_of_steps(std::size_t k, std::size_t steps) const {
+    std::vector<Instant> times = beats_[k - 1].at;
+    if (steps < times.size()) {
+      times.resize(steps + 1);
+      return times;
+    }
+    const Instant depart = chain_.stops[k - 1].depart;
+    const double whole_s = to_seconds(chain_.stops[k].arrive - depart);
+    times.clear();
+    for (std::size_t n = 0; n <= steps; ++n) times.push_back(depart + seconds(whole_s * double(n) / double(steps)));
+    return times;
   }
 
   [[nodiscard]] std::size_t heading_of(std::size_t k) const {
@@ -451,6 +517,8 @@ class ChainBuilder {
   std::vector<std::vector<std::uint32_t>> who_;       // performer on each place of each station as drawn; may be empty
   std::vector<std::vector<std::uint32_t>> kinds_;     // of each performer in each interval between stations
   StageKey floor_{};
+  std::vector<Beats> beats_;                                // over cells: of each leg
+  std::vector<std::vector<std::vector<CellIndex>>> after_;  // over cells: of each leg, as Step::after
   Chain chain_;
 };
 

@@ -2,8 +2,11 @@
 #include "planner/schedule/step.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
+
+#include "planner/schedule/steps.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -44,6 +47,7 @@ class OrderedStep {
     StageHash hash("step");
     hash.add(floor).add(task_.exact).add(task_.clearance_m).add(task_.snap.longest_m);
     hash.list(now_).list(own_).list(kind_).add(task_.walked_s).add(task_.lag_s).add(task_.wait_s);
+    if (task_.over_cells) hash.add(task_.over_cells->most).add(task_.over_cells->step_s);
     if (task_.exact) return hash.key();
     hash.add(task_.snap.onward_m).add(goal_.empty() ? 0.0 : task_.snap.goal_m).list(goal_);
     for (const std::vector<Wanted>* list : {&wanted_, &onward_}) {
@@ -60,18 +64,14 @@ class OrderedStep {
   }
 
   [[nodiscard]] Step run() const {
+    if (task_.over_cells) return over_cells();
     Step step;
     if (task_.exact) {
       step.cells = own_;
       step.leg = pair(step.cells, {}, {});
       return step;
     }
-    SnapTask snap_task = task_.snap;
-    snap_task.now = now_;
-    snap_task.own = own_;
-    snap_task.wanted = wanted_;
-    snap_task.onward = onward_;
-    snap_task.goal = goal_;
+    SnapTask snap_task = ordered_snap();
     std::vector<char> hold(now_.size(), 0);
     std::vector<char> slow(now_.size(), 0);
     snap_task.slow_m = slow_m();
@@ -101,6 +101,9 @@ class OrderedStep {
       out.cells[order_[n]] = ordered.cells[n];
       out.leg.target_of[order_[n]] = order_[ordered.leg.target_of[n]];
     }
+    for (std::size_t step = 0; step < ordered.after.size(); ++step) {
+      for (std::uint32_t n = 0; n < order_.size(); ++n) out.after[step][order_[n]] = ordered.after[step][n];
+    }
     for (std::uint32_t n = 0; n < ordered.leg.timing.size(); ++n) out.leg.timing[order_[n]] = ordered.leg.timing[n];
     for (auto* pairs : {&out.leg.conflicts, &out.leg.late_conflicts}) {
       for (auto& [a, b] : *pairs) {
@@ -112,6 +115,68 @@ class OrderedStep {
   }
 
  private:
+  [[nodiscard]] SnapTask ordered_snap() const {
+    SnapTask snap_task = task_.snap;
+    snap_task.now = now_;
+    snap_task.own = own_;
+    snap_task.wanted = wanted_;
+    snap_task.onward = onward_;
+    snap_task.goal = goal_;
+    return snap_task;
+  }
+
+  [[nodiscard]] Step over_cells() const {
+    const std::vector<CellIndex> to = task_.exact ? own_ : snap(ordered_snap());
+    StepsTask steps_task{task_.snap.ways, now_, to, task_.over_cells->most, kind_, task_.clearance_m, late_step()};
+    // An exact formation is reached or refused by how many counts it would take.
+    if (task_.exact) steps_task.most_steps = std::numeric_limits<int>::max();
+    std::optional<Steps> steps = step_through(steps_task);
+    if (steps && task_.exact && steps->count() > task_.over_cells->most && steps_task.late_share > 0) {
+      steps_task.late_share = 0;
+      std::optional<Steps> closely = step_through(steps_task);
+      if (closely->arrived && closely->count() <= task_.over_cells->most) steps = std::move(closely);
+    }
+    Step step;
+    step.cells = to;
+    if (!steps) return stay(step);
+    step.leg.target_of = steps->target_of;
+    std::vector<CellIndex> at(now_);
+    for (int n = 0; n < steps->count(); ++n) {
+      for (std::uint32_t m = steps->first[std::size_t(n)]; m < steps->first[std::size_t(n) + 1]; ++m) {
+        at[steps->moves[m].person] = steps->moves[m].cell;
+      }
+      step.after.push_back(at);
+    }
+    if (task_.exact && !steps->arrived) step.after.push_back(to_of(step));
+    if (!task_.exact) {
+      for (std::size_t i = 0; i < at.size(); ++i) step.cells[step.leg.target_of[i]] = at[i];
+    }
+    return step;
+  }
+
+  /// Where everybody ends, by where she began.
+  [[nodiscard]] std::vector<CellIndex> to_of(const Step& step) const {
+    std::vector<CellIndex> to;
+    to.reserve(now_.size());
+    for (const std::uint32_t target : step.leg.target_of) to.push_back(step.cells[target]);
+    return to;
+  }
+
+  /// Nobody can come to where she shall over cells: to an exact formation it is shown what is missing, else all stay.
+  [[nodiscard]] Step stay(Step step) const {
+    step.leg.target_of.resize(now_.size());
+    std::iota(step.leg.target_of.begin(), step.leg.target_of.end(), 0U);
+    if (task_.exact) {
+      step.after.push_back(step.cells);
+    } else {
+      step.cells = now_;
+    }
+    return step;
+  }
+
+  /// Lateness as a share of a step; more than nearly one can be kept by nobody.
+  [[nodiscard]] double late_step() const { return std::min(0.99, task_.lag_s / task_.over_cells->step_s); }
+
   [[nodiscard]] Leg pair(const std::vector<CellIndex>& to, std::span<const char> free,
                          std::span<const char> hold) const {
     LegTask leg;
@@ -200,7 +265,8 @@ std::string encoded(const Step& step) {
     timing.push_back(own.end);
   }
   out.list(step.cells).list(step.leg.target_of).list(flat(step.leg.conflicts)).list(flat(step.leg.late_conflicts));
-  out.list(timing);
+  out.list(timing).add(step.after.size());
+  for (const auto& cells : step.after) out.list(cells);
   return out.add(step.leg.exchanges).add(step.leg.walkable).take();
 }
 
@@ -212,6 +278,9 @@ Step decoded(StageReader& reader) {
   step.leg.late_conflicts = pairs_of(reader.list<std::uint32_t>());
   const auto timing = reader.list<double>();
   for (std::size_t n = 0; n + 1 < timing.size(); n += 2) step.leg.timing.push_back({timing[n], timing[n + 1]});
+  for (auto left = reader.get<std::size_t>(); left > 0 && !reader.failed(); --left) {
+    step.after.push_back(reader.list<CellIndex>());
+  }
   step.leg.exchanges = reader.get<int>();
   step.leg.walkable = reader.get<bool>();
   return step;

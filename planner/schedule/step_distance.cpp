@@ -9,8 +9,6 @@ namespace footlight::planner {
 namespace {
 
 constexpr std::uint16_t kFar = std::numeric_limits<std::uint16_t>::max();
-/// Searched distances that are kept at once: half a gigabyte.
-constexpr std::size_t kMostKept = std::size_t{1} << 28U;
 
 int floor_half(int value) { return value >= 0 ? value / 2 : -((1 - value) / 2); }
 
@@ -116,6 +114,17 @@ bool StepDistance::reachable(const Walker& walker) {
   if (open_ || walker.home() || free_rectangle(walker)) return true;
   if ((fields_.size() + 1) * links_.size() > kMostKept) return false;
   return field(index(walker.goal_column, walker.goal_row))[index(walker.column, walker.row)] != kFar;
+}
+
+int StepDistance::steps(CellIndex from, CellIndex goal) {
+  if (open_) return steps_between(grid_.kind(), grid_.cell(from), grid_.cell(goal));
+  return field(goal.at())[from.at()];
+}
+
+bool StepDistance::linked(CellIndex from, CellIndex to) const {
+  if (open_) return true;
+  const auto& links = links_[from.at()];
+  return std::find(links.begin(), links.end(), static_cast<std::int32_t>(to.value())) != links.end();
 }
 
 NextCells StepDistance::nearer(const Walker& walker) {

@@ -38,6 +38,9 @@ class NextCells {
 /// Steps to goals on a stage. Keeps what it has searched.
 class StepDistance {
  public:
+  /// Searched distances that are kept at once: half a gigabyte.
+  static constexpr std::size_t kMostKept = std::size_t{1} << 28U;
+
   explicit StepDistance(const Ways& ways);
 
   /// Whether the goal can be reached over neighbouring cells at all, and the memory for it allowed.
@@ -45,6 +48,10 @@ class StepDistance {
   /// Neighbouring cells that are a step nearer to the goal, ascending; at least one for a goal that can be reached and
   /// is not here.
   [[nodiscard]] NextCells nearer(const Walker& walker);
+  /// Steps from a cell to a goal that can be reached; a large number from where it cannot.
+  [[nodiscard]] int steps(CellIndex from, CellIndex goal);
+  /// Whether one can step from a cell to a neighbouring one.
+  [[nodiscard]] bool linked(CellIndex from, CellIndex to) const;
 
  private:
   using Field = std::vector<std::uint16_t>;

@@ -7,12 +7,14 @@
 #include <cstdlib>
 
 #include "core/check.hpp"
+#include "planner/schedule/push.hpp"
 #include "planner/schedule/step_distance.hpp"
 
 namespace footlight::planner {
 namespace {
 
 constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
+constexpr double kRounding = 1e-9;
 
 class Stepper {
  public:
@@ -22,7 +24,8 @@ class Stepper {
         distance_(*task.ways),
         columns_(grid_.columns()),
         closed_form_(grid_.kind() == GridKind::square && task.ways->open()),
-        watches_turns_(grid_.kind() == GridKind::hexagonal),
+        least_turn_(least_turn(task)),
+        watches_turns_(grid_.kind() == GridKind::hexagonal || least_turn_ > 0),
         occupant_(static_cast<std::size_t>(grid_.size()), kNobody) {}
 
   std::optional<Steps> run() {
@@ -45,6 +48,7 @@ class Stepper {
     }
     out.arrived = !anybody_active();
     finish(out);
+    if (idle != 0) push_aside(task_, out);
     return out;
   }
 
@@ -158,7 +162,8 @@ class Stepper {
     if (left.step != step_) return true;
     const Point middle = grid_.centre(CellIndex::of(cell));
     const Point mine = middle - grid_.centre(CellIndex::of(cell_of(walkers_[i])));
-    return dot(mine, grid_.centre(CellIndex::of(left.to)) - middle) >= 0;
+    const double pitch_m = grid_.pitch_m();
+    return dot(mine, grid_.centre(CellIndex::of(left.to)) - middle) >= (least_turn_ - kRounding) * pitch_m * pitch_m;
   }
 
   [[nodiscard]] bool may_exchange(std::uint32_t a, std::uint32_t b) const {
@@ -239,6 +244,7 @@ class Stepper {
   StepDistance distance_;
   std::int32_t columns_;
   bool closed_form_;
+  double least_turn_;
   bool watches_turns_;
   std::vector<std::uint32_t> occupant_;  // of each cell
   std::vector<Walker> walkers_;          // in the order of their first cells

@@ -7,6 +7,7 @@ The judge is found through FOOTLIGHT_SHARED (default ../shared beside the projec
 FOOTLIGHT_FULL=1 runs the long forms.
 """
 import argparse
+import csv
 import hashlib
 import json
 import os
@@ -92,6 +93,26 @@ class Shows(Case):
     def test_vine_is_planned_and_judged_well(self):
         measured = self.assert_judged_well(os.path.join(ROOT, "shows/vine/show.yaml"), 900)
         self.assertGreaterEqual(measured["min_clearance_m"], 0.5)
+
+    def test_vine_over_cells_is_judged_well_and_lights_its_markers(self):
+        shutil.copytree(os.path.join(ROOT, "shows/vine"), self.path("vine"), ignore=shutil.ignore_patterns("*.plan", "*.stages"))
+        show = self.path("vine", "show.yaml")
+        with open(show) as f:
+            text = f.read()
+        with open(show, "w") as f:
+            f.write(text.replace("\ntitle:", "\nwalk: cells\ntitle:", 1))
+        measured = self.assert_judged_well(show, 900)
+        self.assertAlmostEqual(measured["min_clearance_m"], 0.5 ** 0.5, places=6)
+        self.assertEqual(measured["lag_tolerated_by"], measured["transitions"])
+        with open(self.path("csv", "marks.csv"), newline="") as f:
+            marks = list(csv.DictReader(f))
+        for before, after in zip(marks, marks[1:]):
+            if before["performer"] == after["performer"]:
+                steps = abs(int(before["col"]) - int(after["col"])) + abs(int(before["row"]) - int(after["row"]))
+                self.assertLessEqual(steps, 1, f"{before} {after}")
+                self.assertTrue(steps == 0 or float(after["count"]).is_integer(), after)
+        report = json.loads(footlight("dryrun", show, "--plan", self.path("show.plan"), "--json")[0])
+        self.assertEqual(report["wrong_final"], 0, report)
 
     def test_every_mode_is_judged_as_it_measures_itself(self):
         """One film, planned in each mode: the figures of both judges are those of `measure`, which puts the modes side by side."""

@@ -15,7 +15,8 @@ class Sja1000 : public ::testing::Test {
  protected:
   Sja1000() {
     for (const char* name : {"can0", "can1"}) {
-      run("ip link set " + std::string(name) + " down; ip link set " + name + " up type can bitrate 500000 restart-ms 100");
+      run("ip link set " + std::string(name) + " down; ip link set " + name +
+          " up type can bitrate 500000 restart-ms 100");
     }
   }
 };

@@ -20,8 +20,8 @@ bool eventually(const std::function<bool()>& condition, Duration limit = seconds
 [[nodiscard]] Instant guest_now();
 
 /// Pulls a device out of the guest and puts one in, by QEMU's control channel (QMP), which ends inside the guest. The
-/// names are those of tests/hardware/boot: sja0, sja1, ftdi0, ftdi1. After `unplug` the device is gone; after `plug` wait
-/// for what it brings about.
+/// names are those of tests/hardware/boot: sja0, sja1, ftdi0, ftdi1. After `unplug` the device is gone; after `plug`
+/// wait for what it brings about.
 void unplug(const std::string& device);
 /// @param arguments as QMP's device_add wants them: R"("driver":"usb-serial","chardev":"ftdia","id":"ftdi0")"
 void plug(const std::string& arguments);

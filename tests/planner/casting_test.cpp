@@ -226,7 +226,8 @@ class Regions : public testing::Test {
   /// A wide bar that grows in height, so that all regions have places.
   static Film film() {
     return tests::film_of(31, [](int f) {
-      return tests::mask_where(150, 100, [f](int x, int y) { return x > 12 && x < 148 && std::abs(y - 50) < 5 + f / 4; });
+      return tests::mask_where(150, 100,
+                               [f](int x, int y) { return x > 12 && x < 148 && std::abs(y - 50) < 5 + f / 4; });
     });
   }
   Show show_;
@@ -280,9 +281,10 @@ TEST_F(Regions, ContradictAListThatSaysWhoStandsWhere) {
   show_.sections[0].duration_counts = 0;
   auto planned = plan_show(show_, {std::nullopt});
   ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error(),
-            input_error("show.yaml:35:9: error: sections[0].regions: 'bow.csv' says who stands where already (leave out "
-                        "the regions or its column of names or groups)"));
+  EXPECT_EQ(
+      planned.error(),
+      input_error("show.yaml:35:9: error: sections[0].regions: 'bow.csv' says who stands where already (leave out "
+                  "the regions or its column of names or groups)"));
 }
 
 TEST(Casting, APinThatContradictsAListIsAnErrorAtItsPlace) {

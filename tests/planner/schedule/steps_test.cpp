@@ -189,11 +189,84 @@ TEST(StepThrough, KindsExchangeAmongThemselvesOnly) {
   const auto from = cells_of(stage.grid, {{0, 0}, {2, 0}});
   const auto to = cells_of(stage.grid, {{4, 0}, {2, 0}});
   const std::vector<std::uint32_t> names{0, 1};
-  const auto stuck = step_through({&ways, from, to, 100, names}).value();
-  EXPECT_FALSE(stuck.arrived);
-  EXPECT_EQ(stuck.target_of, (std::vector<std::uint32_t>{0, 1}));
+  const StepsTask named{&ways, from, to, 100, names};
+  const auto pushed = step_through(named).value();
+  EXPECT_TRUE(pushed.arrived);
+  EXPECT_EQ(pushed.target_of, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(walked(named, pushed).back(), to);
   const std::vector<std::uint32_t> alike{7, 7};
-  EXPECT_TRUE(step_through({&ways, from, to, 100, alike})->arrived);
+  EXPECT_EQ(step_through({&ways, from, to, 100, alike})->target_of, (std::vector<std::uint32_t>{1, 0}));
+}
+
+TEST(StepThrough, NamedPeopleWhereNobodyCanStepAsideDoNotArriveAndStayClear) {
+  const Stage stage = stage_of(GridKind::square, 5, 1);
+  const Ways ways = ways_of(stage);
+  const auto from = cells_of(stage.grid, {{0, 0}, {2, 0}});
+  const auto to = cells_of(stage.grid, {{4, 0}, {2, 0}});
+  const std::vector<std::uint32_t> names{0, 1};
+  const StepsTask task{&ways, from, to, 100'000, names};
+  const auto steps = step_through(task).value();
+  EXPECT_FALSE(steps.arrived);
+  walked(task, steps);
+}
+
+/// Two blocks of people with names change sides, on every grid, with a set piece between them.
+TEST(StepThrough, NamedPeoplePassThroughEachOther) {
+  for (const GridKind kind : {GridKind::square, GridKind::hexagonal, GridKind::triangular}) {
+    Stage stage = stage_of(kind, 20, 14);
+    for (int row = 6; row < 8; ++row) stage.blocked.push_back(stage.grid.index({10, row}));
+    const Ways ways = ways_of(stage);
+    std::vector<Cell> left;
+    std::vector<Cell> right;
+    for (int row = 3; row < 11; ++row) {
+      for (int column = 1; column < 5; ++column) {
+        left.push_back({column, row});
+        right.push_back({column + 14, row});
+      }
+    }
+    std::vector<CellIndex> from = cells_of(stage.grid, left);
+    std::vector<CellIndex> to = cells_of(stage.grid, right);
+    const auto others = from;
+    from.insert(from.end(), to.begin(), to.end());
+    to.insert(to.end(), others.begin(), others.end());
+    std::vector<std::uint32_t> names;
+    for (std::uint32_t i = 0; i < from.size(); ++i) names.push_back(i);
+    const StepsTask task{&ways, from, to, 100'000, names};
+    const auto steps = step_through(task).value();
+    // Three neighbours leave such a crowd too little room; it stays clear all the same.
+    EXPECT_TRUE(steps.arrived || kind == GridKind::triangular) << to_text(kind) << " after " << steps.count();
+    EXPECT_EQ(steps.target_of, names);
+    walked(task, steps);
+  }
+}
+
+/// Who is late by 0.3 of a step comes no nearer than the clearance to whoever is ahead or behind.
+TEST(StepThrough, FollowsNoCloserThanLatenessAllows) {
+  const Stage stage = stage_of(GridKind::square, 12, 12);
+  const Ways ways = ways_of(stage);
+  Rng rng(5);
+  auto cells = tests::random_cells(stage.grid, 144, rng);
+  const std::vector<CellIndex> from(cells.begin(), cells.begin() + 60);
+  const std::vector<CellIndex> to(cells.begin() + 50, cells.begin() + 110);
+  for (const double late_share : {0.0, 0.3}) {
+    StepsTask task{&ways, from, to, 100'000, {}};
+    task.clearance_m = 0.6;
+    task.late_share = late_share;
+    const auto steps = step_through(task).value();
+    EXPECT_TRUE(steps.arrived);
+    const auto at = walked(task, steps);
+    bool turned = false;
+    for (std::size_t n = 1; n < at.size(); ++n) {
+      for (std::size_t i = 0; i < from.size(); ++i) {
+        for (std::size_t j = 0; j < from.size(); ++j) {
+          if (i == j || at[n][i] != at[n - 1][j] || at[n][i] == at[n - 1][i]) continue;
+          const Point mine = stage.grid.centre(at[n][i]) - stage.grid.centre(at[n - 1][i]);
+          turned = turned || dot(mine, stage.grid.centre(at[n][j]) - stage.grid.centre(at[n - 1][j])) < 0.5;
+        }
+      }
+    }
+    EXPECT_EQ(turned, late_share == 0.0);
+  }
 }
 
 /// Any crowd on any grid, with blocked cells or without, densely or thinly: everybody arrives, and every step is clear.

@@ -92,8 +92,7 @@ Bytes rtu(Bytes bytes) {
 }
 
 const Bytes kRtuPreload = rtu({2, 0x10, 0, 0, 0, 3, 6, 0xA3, 5, 7, 8, 9, 10});
-const Bytes kRtuLatch =
-    rtu({0, 0x10, 0, 0x20, 0, 3, 6, 0xA3, 5, 0xA3 ^ 0x5A, 5 ^ 0x5A, 0xA3 ^ 0xA5, 5 ^ 0xA5});
+const Bytes kRtuLatch = rtu({0, 0x10, 0, 0x20, 0, 3, 6, 0xA3, 5, 0xA3 ^ 0x5A, 5 ^ 0x5A, 0xA3 ^ 0xA5, 5 ^ 0xA5});
 
 TEST_F(ServedRigTest, AnRtuMasterPreloadsLatchesAndReadsBack) {
   serve(small_rig(BusKind::modbus_rtu, 2, 4, 115'200));
@@ -210,8 +209,9 @@ TEST_F(ServedRigTest, APortThatIsTakenIsNamed) {
   serving.first_port = std::stoi(url.substr(url.rfind(':') + 1));
   const auto refused = ServedRig::open(small_rig(BusKind::modbus_tcp, 1, 4, 0), serving, clock_, nullptr);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "bus \"b\": port 127.0.0.1:" + std::to_string(serving.first_port) +
-                                         ": not opened: Address already in use (--ports-from gives the first of the ports)");
+  EXPECT_EQ(refused.error().message,
+            "bus \"b\": port 127.0.0.1:" + std::to_string(serving.first_port) +
+                ": not opened: Address already in use (--ports-from gives the first of the ports)");
 }
 
 /// A socket pair that keeps frame boundaries as a CAN socket does.
