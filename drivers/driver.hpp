@@ -38,7 +38,7 @@ struct DeviceEvent {
     booted,     ///< the node has restarted and shows NO-GUIDANCE
     missed,     ///< no answer in time, or a wrong one
     rejected,   ///< the device refused (Modbus exception, EMCY); `detail` is its code
-    bus_down,
+    bus_down,   ///< on CAN `detail` is the CanState
     bus_up,
   };
   /// When a request that was refused may be sent again.

@@ -9,6 +9,7 @@
 #include "drivers/devices/canopen/canopen_driver.hpp"
 #include "drivers/devices/footlight_serial/serial_driver.hpp"
 #include "drivers/devices/modbus/modbus_driver.hpp"
+#include "drivers/transports/can_interface.hpp"
 #include "drivers/transports/can_socket.hpp"
 #include "drivers/transports/modbus_port.hpp"
 #include "drivers/transports/serial_stream.hpp"
@@ -100,11 +101,18 @@ Result<Port> open_can_bus(const Bus& bus, const std::string& place, const Nodes&
   return as_port(open_can(place, bus.bits_per_second));
 }
 
+std::vector<std::string> preflight_can_bus(const Bus& bus, const std::string& place) {
+  const auto interface = read_can_interface(place);
+  if (!interface) return {interface.error().message};
+  return objections(*interface, bus.bits_per_second);
+}
+
 struct Transport {
   std::string_view scheme;
   BusKind kind;
   std::string_view example;
   Result<Port> (*open)(const Bus&, const std::string& place, const Nodes&);
+  std::vector<std::string> (*preflight)(const Bus&, const std::string& place) = nullptr;
 };
 
 // A new transport is a line here and its sources in CMakeLists.txt.
@@ -112,7 +120,7 @@ constexpr std::array kTransports{
     Transport{"serial", BusKind::serial, "serial:///dev/serial/by-id/...", open_serial_bus},
     Transport{"rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/...", open_rtu_bus},
     Transport{"tcp", BusKind::modbus_tcp, "tcp://host:502", open_tcp_bus},
-    Transport{"can", BusKind::can, "can://can0", open_can_bus},
+    Transport{"can", BusKind::can, "can://can0", open_can_bus, preflight_can_bus},
 };
 
 std::string example_for(BusKind kind) {
@@ -167,6 +175,17 @@ Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes) {
   }
   if (bus.simulated()) return wrong("a simulated bus has no wire to open", examples);
   return wrong("no transport of that name", examples);
+}
+
+std::vector<std::string> preflight(const Bus& bus) {
+  std::vector<std::string> found;
+  for (const Transport& transport : kTransports) {
+    if (transport.scheme != scheme_of(bus.url) || transport.preflight == nullptr) continue;
+    for (const std::string& what : transport.preflight(bus, std::string(place_of(bus.url)))) {
+      found.push_back("bus \"" + bus.name + "\": " + what);
+    }
+  }
+  return found;
 }
 
 }  // namespace footlight::drivers

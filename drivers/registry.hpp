@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -34,5 +35,9 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
 /// @param nodes of the bus: over TCP a broadcast goes to each of them
 /// Errors: ErrorKind::input for a URL that no transport takes, ErrorKind::device for what the machine refuses.
 [[nodiscard]] Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes);
+
+/// What would go wrong in a show with the real wire that the bus's URL names, as far as the machine tells without
+/// opening it: one sentence each, with the command that mends it. Empty for kinds of wire that have nothing to look at.
+[[nodiscard]] std::vector<std::string> preflight(const Bus& bus);
 
 }  // namespace footlight::drivers

@@ -53,6 +53,16 @@ struct CanFrame {
   friend bool operator==(const CanFrame&, const CanFrame&) = default;
 };
 
+/// How a CAN interface stands; from `stalled` on nothing can be sent.
+enum class CanState : std::uint8_t {
+  active,   ///< error counters below 96
+  warning,  ///< one of them at 96 or more
+  passive,  ///< one of them at 128 or more
+  stalled,  ///< frames wait and none leaves: mostly nobody is there to acknowledge
+  bus_off,  ///< the transmit error counter passed 255: silent until the interface is restarted
+  down,     ///< taken down, or its adapter pulled out
+};
+
 /// A CAN interface. One owner; never blocks.
 class CanPort {
  public:
@@ -63,8 +73,10 @@ class CanPort {
   virtual bool receive(CanFrame& frame) = 0;
   /// Time of one frame on the wire at worst stuffing, inter-frame space included.
   [[nodiscard]] virtual Duration wire_time(const CanFrame& frame) const = 0;
-  /// Frames accepted and not yet on the wire.
+  /// Frames accepted and not known to have been on the wire.
   [[nodiscard]] virtual std::size_t queued() const = 0;
+  /// As known after the last call of another member, but for `stalled`, which comes by the passing of time.
+  [[nodiscard]] virtual CanState state() const = 0;
   /// As of ByteStream.
   [[nodiscard]] virtual int poll_handle() const { return -1; }
   /// As of ByteStream.

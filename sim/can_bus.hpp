@@ -37,6 +37,7 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
   [[nodiscard]] std::size_t queued() const override {
     return queue_.size() - (now_sending_.speaker == kController ? 1 : 0);
   }
+  [[nodiscard]] drivers::CanState state() const override { return drivers::CanState::active; }
 
  private:
   static constexpr int kNobody = -2;

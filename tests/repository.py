@@ -25,6 +25,7 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"modbus(/modbus)?\.h": r"^drivers/transports/",
     r"gpiod\.h": r"^drivers/transports/",
     r"linux/can": r"^drivers/transports/|^sim/endpoints/",
+    r"netlink/": r"^drivers/transports/",
     r"sqlite3\.h": r"^config/",
     r"opencv2/": r"^config/media/|^config/decode|^planner/",
     r"cairo": r"^app/",

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "core/clock.hpp"
+#include "core/file_descriptor.hpp"
 #include "core/result.hpp"
 #include "drivers/transport.hpp"
-#include "drivers/transports/file_descriptor.hpp"
+#include "drivers/transports/can_in_flight.hpp"
 
 namespace footlight::drivers {
 
@@ -19,23 +21,44 @@ namespace footlight::drivers {
   return 47 + 8 * data_bytes + (34 + 8 * data_bytes - 1) / 4;
 }
 
-/// A raw SocketCAN interface. What is still queued is reckoned from the frames' wire time, as the kernel does not say.
+/// A raw SocketCAN interface.
+///
+/// The kernel takes frames that never reach the wire: while an interface is without carrier `write` succeeds and the
+/// frame is dropped, and `poll` says that a socket is writable when its interface's queue is full (ENOBUFS). So a frame
+/// counts as queued until its echo has come back (CAN_RAW_RECV_OWN_MSGS, MSG_CONFIRM), and a queue that does not move
+/// is `stalled`. Bus-off and restart come as error frames, the end of an interface as an error of the socket; an
+/// interface that comes back, perhaps as a new one of the same name, is taken up within 100 ms of calls.
 class CanSocket final : public CanPort {
  public:
-  CanSocket(FileDescriptor socket, int bits_per_second);
+  /// @param socket bound to `interface`  @param clock borrowed
+  CanSocket(FileDescriptor socket, std::string interface, int bits_per_second, const Clock& clock,
+            CanState state = CanState::active);
 
   SendStatus send(const CanFrame& frame) override;
   bool receive(CanFrame& frame) override;
+  /// CAN FD frames are reckoned at the nominal bit rate throughout: an upper bound.
   [[nodiscard]] Duration wire_time(const CanFrame& frame) const override;
-  [[nodiscard]] std::size_t queued() const override;
+  [[nodiscard]] std::size_t queued() const override { return in_flight_.size(); }
+  [[nodiscard]] CanState state() const override;
   [[nodiscard]] int poll_handle() const override { return socket_.get(); }
 
  private:
+  enum class Heard { nothing, frame, other };
+
+  Heard read_one(CanFrame& frame);
+  void take_error_frame(const CanFrame& frame);
+  void go_down();
+  void go_off();
+  void reopen_when_due();
+
   FileDescriptor socket_;
+  std::string interface_;
   int bits_per_second_;
-  SteadyClock clock_;
-  Instant sent_by_{};  ///< all accepted frames have left by then
-  bool bus_off_ = false;
+  const Clock& clock_;
+  CanInFlight in_flight_;
+  CanState state_ = CanState::active;
+  Instant try_again_{};        ///< down: to open the interface; bus-off: to send though nobody told of a restart
+  std::uint32_t dropped_ = 0;  ///< frames that did not fit into our socket, as the kernel counts them
 };
 
 /// @param interface as "can0", up and configured (`ip link set can0 up type can bitrate 500000 restart-ms 100`)

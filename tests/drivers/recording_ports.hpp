@@ -59,8 +59,10 @@ class RecordingCan final : public CanPort {
     return microseconds(2) * worst_can_bits(frame.length);
   }
   [[nodiscard]] std::size_t queued() const override { return in_queue; }
+  [[nodiscard]] CanState state() const override { return status == SendStatus::down ? CanState::down : bus; }
 
   SendStatus status = SendStatus::accepted;
+  CanState bus = CanState::active;
   std::size_t capacity = 10;
   std::size_t in_queue = 0;
   std::vector<CanFrame> sent;

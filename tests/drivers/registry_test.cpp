@@ -91,5 +91,17 @@ TEST(Registry, UrlsThatNoTransportTakesAreRefused) {
             "bus \"front\": \"host:0\": the port is not a number of 1..65535 (host:502 or [IPv6 address]:502)");
 }
 
+TEST(Registry, PreflightNamesTheBusAndKindsWithoutOneHaveNothingToSay) {
+  Bus bus;
+  bus.name = "front";
+  bus.kind = BusKind::can;
+  bus.url = "can://can77";
+  const auto found = preflight(bus);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].rfind("bus \"front\": CAN interface \"can77\": ", 0), 0U) << found[0];
+  bus.url = "serial:///dev/null";
+  EXPECT_TRUE(preflight(bus).empty());
+}
+
 }  // namespace
 }  // namespace footlight::drivers

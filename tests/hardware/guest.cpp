@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "core/clock.hpp"
-#include "drivers/transports/file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 
 namespace footlight::hardware {
 namespace {
@@ -66,7 +66,7 @@ class Control {
     return line;
   }
 
-  drivers::FileDescriptor port_;
+  FileDescriptor port_;
 };
 
 void command(const std::string& request, const std::string& event = {}) {

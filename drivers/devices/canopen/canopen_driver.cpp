@@ -18,7 +18,8 @@ constexpr int kFramesPerStep = 256;     // a flood must not keep us from sending
 constexpr Duration kSilence = milliseconds(2500);
 constexpr Duration kLongestTurnaround = milliseconds(5);
 constexpr Duration kNodeHeartbeatPeriod = milliseconds(1000);
-constexpr Duration kMargin = milliseconds(10);  // scheduling of the machine, a late node
+constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, a late node
+constexpr Duration kLookAtBus = milliseconds(20);  // while frames wait or the bus is down: nothing else may tell
 
 constexpr std::uint8_t kBootUp = 0;
 constexpr std::uint8_t kStopped = 4;
@@ -70,9 +71,12 @@ Duration CanopenDriver::upload_time() const {
   return sum;
 }
 
-bool CanopenDriver::ready() const { return outbox_.empty() && port_.queued() + kMostFrames <= kWindow; }
+bool CanopenDriver::ready() const {
+  return down() || (outbox_.empty() && port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
+}
 
 SendStatus CanopenDriver::start(Instant now) {
+  if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
   const SendStatus status = hand_over(canopen::nmt(canopen::NmtCommand::start, 0));
   if (status != SendStatus::accepted) return status;
@@ -85,12 +89,13 @@ SendStatus CanopenDriver::preload(const NodeAddress& node, Sequence sequence, st
                                   Instant /*now*/) {
   FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
   FL_CHECK(looks.size() == node.channels);
+  if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
   for (const CanFrame& frame : canopen::preload(node.address, looks)) outbox_.push_back(frame);
   leaving_ = Preload{node.node, sequence, 0};
   unlatched_ = true;
   pump();
-  if (!down_) return SendStatus::accepted;
+  if (!down()) return SendStatus::accepted;
   outbox_.clear();
   leaving_.reset();
   return SendStatus::down;
@@ -114,10 +119,11 @@ SendStatus CanopenDriver::ask(const NodeAddress& node, Instant now) {
 }
 
 SendStatus CanopenDriver::upload_look(LookIndex index, const Look& look, Instant /*now*/) {
+  if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
   for (const CanFrame& frame : canopen::look_entry(index, look)) outbox_.push_back(frame);
   pump();
-  if (!down_) return SendStatus::accepted;
+  if (!down()) return SendStatus::accepted;
   outbox_.clear();
   return SendStatus::down;
 }
@@ -125,11 +131,11 @@ SendStatus CanopenDriver::upload_look(LookIndex index, const Look& look, Instant
 SendStatus CanopenDriver::hand_over(const CanFrame& frame) {
   const SendStatus status = port_.send(frame);
   if (status == SendStatus::accepted) ++handed_over_;
-  if (status != SendStatus::busy) down_ = status == SendStatus::down;
-  return status;
+  return down() ? SendStatus::down : status;
 }
 
 SendStatus CanopenDriver::send_sync(Sequence sequence, Instant now) {
+  if (down()) return SendStatus::down;
   if (!outbox_.empty()) return SendStatus::busy;
   const SendStatus status = hand_over(canopen::sync(sequence));
   if (status != SendStatus::accepted) return status;
@@ -171,6 +177,7 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
   Instant next = tell_missed(now, events);
   const bool starting = std::any_of(nodes_.begin(), nodes_.end(), [](const NodeState& node) { return node.start_due; });
   if (!ready() || starting || !on_the_way_.empty()) next = std::min(next, now + status_time());
+  if (down() || port_.queued() > 0) next = std::min(next, now + kLookAtBus);
   return heard == kFramesPerStep ? now : next;
 }
 
@@ -230,7 +237,7 @@ void CanopenDriver::tell_preloads(EventSink& events) {
 }
 
 void CanopenDriver::tell_bus(EventSink& events) {
-  if (down_) {
+  if (down()) {
     if (leaving_) on_the_way_.push_back(*leaving_);
     for (const Preload& preload : on_the_way_) {
       events.on_event({DeviceEvent::Kind::missed, preload.node, preload.sequence});
@@ -239,9 +246,11 @@ void CanopenDriver::tell_bus(EventSink& events) {
     on_the_way_.clear();
     outbox_.clear();
   }
-  if (down_ == down_told_) return;
-  down_told_ = down_;
-  events.on_event({down_ ? DeviceEvent::Kind::bus_down : DeviceEvent::Kind::bus_up, NodeIndex{}});
+  if (down() == down_told_) return;
+  down_told_ = down();
+  DeviceEvent event{down() ? DeviceEvent::Kind::bus_down : DeviceEvent::Kind::bus_up, NodeIndex{}};
+  event.detail = static_cast<std::uint16_t>(port_.state());
+  events.on_event(event);
 }
 
 Instant CanopenDriver::tell_missed(Instant now, EventSink& events) {

@@ -18,6 +18,10 @@ namespace footlight::drivers {
 /// proof. A SYNC asks every node at once; `ask` sends one with the last sequence, which changes no lamp, and is busy
 /// between a preload and its latch, where it would be the latch. Nodes that boot or that wait in pre-operational are
 /// started by the driver itself. A node is `missed` when it leaves a SYNC unanswered and for each 2.5 s of its silence.
+///
+/// A bus on which nothing leaves is down (CanState::stalled and beyond; the event's detail is the state). Then nothing
+/// but heartbeats is put on it, to find out when it is back: what stands in a queue for so long comes too late, and of
+/// a heartbeat that does no harm.
 class CanopenDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver
@@ -58,6 +62,7 @@ class CanopenDriver final : public Driver {
     std::uint64_t last_frame = 0;  ///< count of frames handed to the port, with its own last one
   };
 
+  [[nodiscard]] bool down() const { return port_.state() >= CanState::stalled; }
   SendStatus hand_over(const CanFrame& frame);
   SendStatus send_sync(Sequence sequence, Instant now);
   void pump();
@@ -79,7 +84,6 @@ class CanopenDriver final : public Driver {
   Sequence last_sequence_ = 0;
   bool started_ = false;
   bool unlatched_ = false;  ///< a preload has been sent since the last SYNC
-  bool down_ = false;
   bool down_told_ = false;
   Instant status_deadline_ = kNever;
 };

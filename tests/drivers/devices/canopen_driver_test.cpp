@@ -222,6 +222,47 @@ TEST_F(CanopenDriverTest, APreloadThatTheWireLostIsMissed) {
   EXPECT_EQ(port_.sent.size(), 1U) << "nothing old comes after the wire is back";
 }
 
+TEST_F(CanopenDriverTest, ABusOnWhichNothingLeavesIsDownAndGetsHeartbeatsAlone) {
+  for (const CanState state : {CanState::stalled, CanState::bus_off, CanState::down}) {
+    port_.bus = CanState::active;
+    step();
+    log_.events.clear();
+    port_.sent.clear();
+    port_.in_queue = 9;
+    port_.bus = state;
+    EXPECT_EQ(step(), now_ + milliseconds(20)) << "nobody tells when it is back";
+    ASSERT_EQ(log_.count(Kind::bus_down), 1U);
+    EXPECT_EQ(log_.last(Kind::bus_down)->detail, static_cast<int>(state));
+    EXPECT_TRUE(driver_.ready()) << "to say so";
+    EXPECT_EQ(preload(kOne, 1), SendStatus::down);
+    EXPECT_EQ(driver_.latch(1, now_), SendStatus::down);
+    EXPECT_EQ(driver_.ask(kOne, now_), SendStatus::down);
+    EXPECT_EQ(driver_.start(now_), SendStatus::down);
+    EXPECT_EQ(driver_.upload_look(3, Look{}, now_), SendStatus::down);
+    EXPECT_TRUE(port_.sent.empty());
+    EXPECT_EQ(driver_.heartbeat({}, now_), SendStatus::down);
+    ASSERT_EQ(port_.sent.size(), 1U);
+    EXPECT_EQ(port_.sent[0].id, 0x77F);
+  }
+}
+
+TEST_F(CanopenDriverTest, AWarningIsNoEndOfTheBus) {
+  for (const CanState state : {CanState::warning, CanState::passive}) {
+    port_.bus = state;
+    EXPECT_EQ(preload(kOne, 1), SendStatus::accepted);
+    port_.in_queue = 0;
+    step();
+  }
+  EXPECT_EQ(log_.count(Kind::bus_down), 0U);
+}
+
+TEST_F(CanopenDriverTest, WhileFramesWaitTheBusIsLookedAt) {
+  ASSERT_EQ(driver_.heartbeat({}, now_), SendStatus::accepted);
+  EXPECT_EQ(step(), now_ + milliseconds(20));
+  port_.in_queue = 0;
+  EXPECT_EQ(step(), kNever);
+}
+
 TEST_F(CanopenDriverTest, A32ChannelPreloadAt500KbitIs1080MicrosecondsAtWorst) {
   EXPECT_EQ(driver_.preload_time(32), 4 * microseconds(270));
   EXPECT_EQ(driver_.preload_time(5), microseconds(2 * (47 + 40 + 73 / 4)));

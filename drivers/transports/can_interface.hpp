@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "drivers/transport.hpp"
+
+namespace footlight::drivers {
+
+/// How the kernel has a CAN interface set up.
+struct CanInterface {
+  /// Of a real controller; virtual interfaces have none.
+  struct Controller {
+    int bits_per_second = 0;  ///< 0: not set, or the adapter's own affair
+    int restart_ms = 0;       ///< after bus-off; 0: stays off
+    CanState state = CanState::active;
+    int transmit_errors = 0;  ///< the two error counters
+    int receive_errors = 0;
+    bool echoes = true;  ///< its driver tells when a frame has been on the wire
+  };
+  std::string name;
+  bool up = false;
+  int queue_length = 0;  ///< txqueuelen, frames
+  std::optional<Controller> controller;
+};
+
+/// Asks the kernel by netlink (libnl-route).
+/// Errors: ErrorKind::device: no such interface, not a CAN interface, or a program built without libnl.
+[[nodiscard]] Result<CanInterface> read_can_interface(const std::string& name);
+
+/// What would go wrong with it in a show, one sentence each, with the command that mends it. Empty: nothing.
+/// @param bits_per_second as the rig says
+[[nodiscard]] std::vector<std::string> objections(const CanInterface& interface, int bits_per_second);
+
+}  // namespace footlight::drivers
