@@ -179,8 +179,7 @@ void DryRun::recover() {
   play_to_the_end();
   const std::size_t last = schedule_->switches().size() - 1;
   watch_->for_markers([&](NodeIndex node, std::size_t channel) {
-    if (simulated_.shown(node, static_cast<int>(channel)) != should(last, node, channel))
-      ++report_.wrong_after_recovery;
+    if (!watch_->shows(node, channel, should(last, node, channel))) ++report_.wrong_after_recovery;
   });
 }
 
@@ -251,7 +250,7 @@ void DryRun::compare(std::size_t k) {
   watch_->for_markers([&](NodeIndex node, std::size_t channel) {
     const LookIndex shown = simulated_.shown(node, static_cast<int>(channel));
     const LookIndex planned = should(k, node, channel);
-    if (shown == planned) return;
+    if (watch_->shows(node, channel, planned)) return;
     if (recovered()) ++report_.wrong_after_recovery;
     if (exempt(node)) {
       ++cue.exempt;

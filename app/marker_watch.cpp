@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
+#include "drivers/registry.hpp"
+
 namespace footlight::app {
 
 MarkerWatch::MarkerWatch(const Rig& rig, const controller::CueSchedule& schedule, const sim::SimulatedRig& simulated,
                          Duration latch_ahead)
-    : schedule_(schedule), simulated_(simulated), latch_ahead_(latch_ahead) {
+    : rig_(rig), schedule_(schedule), simulated_(simulated), latch_ahead_(latch_ahead) {
   for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
     const auto node = NodeIndex::of(n);
     if (std::ranges::binary_search(simulated.dead(), node)) continue;
@@ -21,11 +23,10 @@ void MarkerWatch::sample(Instant now, const controller::BusTarget& target) {
   follow(target.current);
   ahead_ = target.next_at != kNever && target.next_at - now <= latch_ahead_ ? target.next : current_;
   for (Marker& marker : markers_) {
-    const LookIndex shown = simulated_.shown(marker.node, static_cast<int>(marker.channel));
-    const bool right = shown == schedule_.looks_of(current_, marker.node)[marker.channel];
+    const bool right = shows(marker.node, marker.channel, schedule_.looks_of(current_, marker.node)[marker.channel]);
     ++samples_;
     right_ += right ? 1 : 0;
-    const bool wrong = !right && !may_show(marker, shown);
+    const bool wrong = !right && !may_show(marker);
     wrong_ += wrong && !marker.wrong ? 1 : 0;
     wrong_samples_ += wrong ? 1 : 0;
     marker.wrong = wrong;
@@ -42,9 +43,17 @@ void MarkerWatch::follow(std::size_t k) {
   }
 }
 
-bool MarkerWatch::may_show(const Marker& marker, LookIndex shown) const {
-  return shown == marker.before || shown == kNoGuidance || !simulated_.powered(marker.node) ||
-         shown == schedule_.looks_of(ahead_, marker.node)[marker.channel] || simulated_.holds(marker.node);
+bool MarkerWatch::shows(NodeIndex node, std::size_t channel, LookIndex look) const {
+  const Look& meant = look == kNoGuidance ? no_guidance_look_ : schedule_.looks()[look];
+  return simulated_.shown(node, static_cast<int>(channel)) ==
+         drivers::shown_for(rig_.buses[rig_.nodes[node.at()].bus.at()], look, meant);
+}
+
+bool MarkerWatch::may_show(const Marker& marker) const {
+  return shows(marker.node, marker.channel, marker.before) || shows(marker.node, marker.channel, kNoGuidance) ||
+         !simulated_.powered(marker.node) ||
+         shows(marker.node, marker.channel, schedule_.looks_of(ahead_, marker.node)[marker.channel]) ||
+         simulated_.holds(marker.node);
 }
 
 double MarkerWatch::right_share() const {

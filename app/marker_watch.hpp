@@ -33,6 +33,9 @@ class MarkerWatch {
   /// Marker-time in which that was so.
   [[nodiscard]] double wrong_s() const;
 
+  /// Whether the lamp shows that look now: by its index, or by the number that its device has for it.
+  [[nodiscard]] bool shows(NodeIndex node, std::size_t channel, LookIndex look) const;
+
   template <class Visit>
   void for_markers(Visit visit) const {
     for (const Marker& marker : markers_) visit(marker.node, marker.channel);
@@ -46,11 +49,13 @@ class MarkerWatch {
     bool wrong = false;
   };
   void follow(std::size_t k);
-  [[nodiscard]] bool may_show(const Marker& marker, LookIndex shown) const;
+  [[nodiscard]] bool may_show(const Marker& marker) const;
 
+  const Rig& rig_;
   const controller::CueSchedule& schedule_;
   const sim::SimulatedRig& simulated_;
   Duration latch_ahead_;
+  Look no_guidance_look_ = no_guidance_look();
   std::vector<Marker> markers_;
   std::size_t current_ = 0;
   std::size_t ahead_ = 0;  ///< a switch that may be lit already; `current_` when there is none

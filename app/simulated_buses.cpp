@@ -20,6 +20,8 @@ const char* simulated_url(BusKind kind) {
       return "sim://tcp";
     case BusKind::modbus_rtu:
       return "sim://rtu";
+    case BusKind::dmx:
+      return "sim://dmx";
   }
   return "sim://rtu";
 }
@@ -33,6 +35,8 @@ drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, Bus
     case BusKind::modbus_rtu:
     case BusKind::modbus_tcp:
       return &simulated.modbus(bus);
+    case BusKind::dmx:
+      break;
   }
   return {};
 }

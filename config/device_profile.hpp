@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/diagnostic.hpp"
 #include "core/rig.hpp"
@@ -18,6 +19,9 @@ namespace footlight::config {
 /// Nothing when there is none.
 [[nodiscard]] std::optional<std::filesystem::path> find_profile(const std::string& name,
                                                                 const std::filesystem::path& folder);
+
+/// Names of the shipped profiles, sorted.
+[[nodiscard]] std::vector<std::string> shipped_profiles();
 
 /// Our own marker, as drivers/profiles/footlight-marker.yaml has it: for rigs that need no file at all.
 [[nodiscard]] ModbusProfile footlight_marker_profile();

@@ -28,7 +28,8 @@ const Listing& bus_listing() {
            .range = {1200, 4'000'000}},
           {.key = "profile",
            .type = Type::text,
-           .doc = "Modbus: name of a shipped device profile, or a YAML file beside the rig.",
+           .doc = "Modbus: name of a shipped device profile (footlight-marker, pick-light, relay-16), or a YAML file "
+                  "beside the rig.",
            .otherwise = "footlight-marker"},
           {.key = "supply",
            .type = Type::text,
@@ -140,56 +141,6 @@ const Listing& rig_listing() {
            .doc = "Devices for the whole floor at once.",
            .otherwise = "none",
            .listing = &floor_listing()},
-      }};
-  return kListing;
-}
-
-const Listing& profile_listing() {
-  static const Range kRegister{0, 65'535};
-  static const Listing kListing{
-      "drivers/profiles/*.yaml",
-      "Where a Modbus device keeps what; numbers of registers from 0, decimal or 0x....",
-      {
-          {.key = "profile",
-           .type = Type::integer,
-           .doc = "Version of this format.",
-           .required = true,
-           .range = {1, 1}},
-          {.key = "name", .type = Type::text, .doc = "Of the device.", .required = true},
-          {.key = "look_register",
-           .type = Type::integer,
-           .doc = "First register of the preload block: the sequence, where there is one, then the looks.",
-           .required = true,
-           .range = kRegister},
-          {.key = "looks_per_register",
-           .type = Type::integer,
-           .doc = "With 2 the lower channel stands in the high byte.",
-           .fallback = "2",
-           .range = {1, 2}},
-          {.key = "preload_sequence",
-           .type = Type::boolean,
-           .doc = "The preload block begins with a register of plan byte and sequence.",
-           .fallback = "true"},
-          {.key = "latch_register",
-           .type = Type::integer,
-           .doc = "First of three registers of the broadcast latch.",
-           .otherwise = "looks act at once",
-           .range = kRegister},
-          {.key = "heartbeat_register",
-           .type = Type::integer,
-           .doc = "First of two registers of the broadcast heartbeat.",
-           .otherwise = "no lease",
-           .range = kRegister},
-          {.key = "status_register",
-           .type = Type::integer,
-           .doc = "First of six status registers.",
-           .otherwise = "nothing can be read back",
-           .range = kRegister},
-          {.key = "look_table_register",
-           .type = Type::integer,
-           .doc = "First of four registers that upload one entry of the look table.",
-           .otherwise = "the device's looks are fixed",
-           .range = kRegister},
       }};
   return kListing;
 }

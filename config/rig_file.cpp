@@ -198,8 +198,9 @@ class RigReader {
     }
     const auto file = find_profile(*name, folder_);
     if (!file) {
+      const auto shipped = shipped_profiles();
       reader.error("profile", "there is no device profile " + in_quotes(*name),
-                   "a shipped one, as footlight-marker, or a .yaml file beside the rig");
+                   suggestion(*name, shipped, "shipped profiles") + "; or a .yaml file beside the rig");
       return;
     }
     bus.profile = read_profile(*file, reader.reading().diagnostics);
@@ -223,6 +224,7 @@ class RigReader {
                           std::string(to_text(on.kind)) + ": 1 to " + std::to_string(last_address(on.kind)));
     }
     check_unique(reader, node, on);
+    check_profile(reader, node, on);
     rig_.nodes.push_back(std::move(node));
   }
 
@@ -271,6 +273,14 @@ class RigReader {
       reader.error("channels", "the node has " + std::to_string(channels) + " channels",
                    "at most " + std::to_string(kChannelsPerNode) + "; give the others to another node");
     }
+  }
+
+  void check_profile(MappingReader& reader, const Node& node, const Bus& bus) {
+    if (!bus.profile || static_cast<int>(node.channels.size()) <= bus.profile->channels) return;
+    if (node.channels.size() > kChannelsPerNode) return;  // has been said
+    reader.error("channels", "the node has " + std::to_string(node.channels.size()) + " channels",
+                 "a device of the profile " + in_quotes(bus.profile->name) + " has at most " +
+                     std::to_string(bus.profile->channels) + "; give the others to another node");
   }
 
   /// @return how many channels the text stands for
@@ -363,6 +373,15 @@ class RigReader {
       }
     }
     if (wrong || !channels || !with_wearables || (floor.has("nodes_per_bus") && !per_bus)) return;
+    for (const BusIndex b : buses) {
+      const Bus& bus = rig_.buses[b.at()];
+      if (!bus.profile || *channels <= bus.profile->channels) continue;
+      return floor.error("channels_per_node",
+                         "the devices of the bus " + in_quotes(bus.name) + " have fewer than " +
+                             std::to_string(*channels) + " channels",
+                         "at most " + std::to_string(bus.profile->channels) + ", as the profile " +
+                             in_quotes(bus.profile->name) + " says");
+    }
     lay_floor(floor, buses, per_bus, *channels, lamps_left(*with_wearables));
   }
 

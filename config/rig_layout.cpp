@@ -75,6 +75,8 @@ int last_address(BusKind kind) {
     case BusKind::modbus_rtu:
     case BusKind::modbus_tcp:
       return 247;
+    case BusKind::dmx:
+      return 512;  // slots
   }
   return 247;
 }

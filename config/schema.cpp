@@ -153,5 +153,6 @@ std::string schema_text(const Listing& listing, std::string_view title) {
 
 std::string show_schema() { return schema_text(show_listing(), "Footlight show file"); }
 std::string rig_schema() { return schema_text(rig_listing(), "Footlight rig file"); }
+std::string profile_schema() { return schema_text(profile_listing(), "Footlight device profile"); }
 
 }  // namespace footlight::config

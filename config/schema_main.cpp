@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(docs / "schema", ignored);
   const bool written = write(docs / "schema" / "show.schema.json", footlight::config::show_schema()) &&
                        write(docs / "schema" / "rig.schema.json", footlight::config::rig_schema()) &&
+                       write(docs / "schema" / "profile.schema.json", footlight::config::profile_schema()) &&
                        write_tables(docs / "show-file.md");
   return written ? 0 : 2;
 }

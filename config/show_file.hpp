@@ -41,6 +41,7 @@ struct FilmLength {
 /// JSON Schema (draft 2020-12) of the show file and of the rig file, made from the listings that the reader uses.
 [[nodiscard]] std::string show_schema();
 [[nodiscard]] std::string rig_schema();
+[[nodiscard]] std::string profile_schema();
 /// The tables of docs/show-file.md, made from the same listings.
 [[nodiscard]] std::string show_reference();
 

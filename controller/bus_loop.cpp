@@ -217,6 +217,7 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
     case Kind::rejected:
       on_miss(*node);
       break;
+    case Kind::content:
     case Kind::bus_down:
     case Kind::bus_up:
       break;
@@ -250,6 +251,7 @@ void BusLoop::on_miss(NodeState& node) noexcept {
   ++counters_.misses;
   node.in_flight = false;
   if (node.misses == 0) node.silent_since = now_;
+  if (!can_.readback) node.right = false;  // perhaps what it was given has not reached it
   if (can_.pushes_status) {
     // Unconfirmed: it gets preload and latch again. Who was right before has most often lost an answer, no more; it is
     // asked again soon.

@@ -15,6 +15,8 @@ std::string_view to_text(BusKind kind) {
       return "modbus-tcp";
     case BusKind::can:
       return "can";
+    case BusKind::dmx:
+      return "dmx";
   }
   return "serial";
 }

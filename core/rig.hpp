@@ -8,26 +8,107 @@
 
 #include "core/diagnostic.hpp"
 #include "core/index.hpp"
+#include "core/look.hpp"
 #include "core/time.hpp"
 
 namespace footlight {
 
-enum class BusKind { serial, modbus_rtu, modbus_tcp, can };
+enum class BusKind { serial, modbus_rtu, modbus_tcp, can, dmx };
 
 [[nodiscard]] std::string_view to_text(BusKind kind);
 
-/// Where a device keeps what in its Modbus registers; read from drivers/profiles/*.yaml (docs/wire-protocol.md,
-/// "Modbus").
+/// A device's own number of something that it can show.
+struct ColourCode {
+  int value = 0;
+  Colour colour;
+  friend bool operator==(const ColourCode&, const ColourCode&) = default;
+};
+struct EffectCode {
+  int value = 0;
+  Effect effect = Effect::steady;
+  friend bool operator==(const EffectCode&, const EffectCode&) = default;
+};
+struct BrightnessCode {
+  int value = 0;
+  int brightness = 255;
+  friend bool operator==(const BrightnessCode&, const BrightnessCode&) = default;
+};
+struct PaletteEntry {
+  int value = 0;  ///< 0..255
+  Look look;
+  friend bool operator==(const PaletteEntry&, const PaletteEntry&) = default;
+};
+
+/// Numbered states of a device whose colours and effects are set once, so that the show only switches states: look i is
+/// state i, state 0 is dark.
+struct StateTable {
+  int first_register = 0;  ///< of state 1
+  int stride = 1;          ///< registers from one state to the next
+  int count = 1;           ///< states besides dark
+  std::optional<int> effect_offset;
+  std::optional<int> colour_offset;
+  std::optional<int> brightness_offset;
+  std::vector<EffectCode> effects;
+  std::vector<ColourCode> colours;
+  std::vector<BrightnessCode> brightnesses;
+  friend bool operator==(const StateTable&, const StateTable&) = default;
+};
+
+/// A register that tells how a device is.
+struct HealthRegister {
+  std::string name;  ///< "battery"
+  int number = 0;
+  double scale = 1;  ///< register value x scale is in `unit`
+  std::string unit;
+  bool has_sign = false;
+  friend bool operator==(const HealthRegister&, const HealthRegister&) = default;
+};
+
+/// Where a device keeps what in its Modbus registers, or coils; read from drivers/profiles/*.yaml
+/// (docs/device-profiles.md).
 struct ModbusProfile {
   std::string name;
-  int look_register = 0;                   ///< first register of the preload block
+  int channels = 32;                       ///< lamps that one node has at most
+  int look_register = 0;                   ///< first register of the preload block; the first coil where `coils`
+  bool coils = false;                      ///< a lamp is a coil: on or off
   int looks_per_register = 2;              ///< 1 or 2; with 2 the lower channel stands in the high byte
   bool has_preload_sequence = true;        ///< the block begins with plan byte and latch sequence, the looks follow
+  bool readable_looks = false;             ///< looks can be read where they are written
+  std::vector<PaletteEntry> palette;       ///< what the device can show, by its own numbers; empty: look indices
   std::optional<int> latch_register;       ///< broadcast-written with the sequence; absent: looks act at once
   std::optional<int> heartbeat_register;   ///< broadcast-written every 250 ms; absent: no lease
   std::optional<int> status_register;      ///< first of: shown sequence, pending sequence, CRC of shown looks, state
   std::optional<int> look_table_register;  ///< upload block of one entry: index, red/green, blue/brightness, effect
+  std::optional<StateTable> states;        ///< or a table of the device's own kind
+  std::optional<int> identity_register;    ///< registers that say what it is
+  int identity_registers = 1;
+  bool identity_is_text = false;          ///< two characters a register
+  std::optional<int> unique_id_register;  ///< two registers
+  std::optional<int> identify_register;   ///< 1: the device shows which one it is; 0: no longer
+  std::optional<int> address_register;    ///< takes the device's new address
+  std::optional<int> readdress_register;  ///< broadcast-written: unique id (2), new address, guard
+  bool restarts_for_address = false;      ///< a new address counts after power-on
+  std::vector<HealthRegister> health;
+  bool low_word_first = false;     ///< of numbers of two registers
+  bool has_broadcast = true;       ///< obeys writes to unit 0
+  bool writes_one_by_one = false;  ///< knows functions 0x06 and 0x05 alone
+  Duration pause_after_write{};
   friend bool operator==(const ModbusProfile&, const ModbusProfile&) = default;
+
+  /// The device holds a look table that shows upload, or shows only what its palette has.
+  [[nodiscard]] bool shows_own_numbers() const { return coils || !palette.empty(); }
+  /// It speaks the language of our own marker, which reports sequence and check sum of what it shows.
+  [[nodiscard]] bool proves_looks() const { return has_preload_sequence && status_register.has_value(); }
+};
+
+/// One slot (DMX channel) of a lamp.
+enum class DmxSlot { dimmer, red, green, blue, white, amber, zero, full };
+
+/// Lamps of one kind on a DMX line; read from drivers/profiles/*.yaml. A node's address is its first slot.
+struct DmxFixture {
+  std::string name;
+  std::vector<DmxSlot> slots;  ///< of one lamp, in their order on the wire
+  friend bool operator==(const DmxFixture&, const DmxFixture&) = default;
 };
 
 /// A character on a serial or RTU line: eight data bits, parity, stop bits.
@@ -54,7 +135,7 @@ struct SerialLine {
 };
 
 /// One wire. `url` chooses the transport: sim://serial, sim://rtu, sim://tcp, sim://can, serial:///dev/...,
-/// rtu:///dev/..., tcp://host:502, can://can0.
+/// rtu:///dev/..., tcp://host:502, can://can0, dmx:///dev/....
 struct Bus {
   std::string name;  ///< unique
   BusKind kind = BusKind::serial;
@@ -64,6 +145,7 @@ struct Bus {
   Position position;
   std::string supply{};  ///< power supply of its nodes that name none; empty: not known
   SerialLine line{};
+  std::optional<DmxFixture> fixture{};  ///< DMX only
 
   /// On this serial or RTU line.
   [[nodiscard]] Characters characters() const {
@@ -87,7 +169,7 @@ inline constexpr int kChannelsPerNode = 32;
 struct Node {
   std::string name;  ///< unique in the rig
   BusIndex bus;
-  int address = 1;                ///< CAN 1..126, Modbus 1..247, serial 1..254; unique on its bus
+  int address = 1;                ///< CAN 1..126, Modbus 1..247, serial 1..254, DMX 1..512; unique on its bus
   std::vector<Channel> channels;  ///< 1..32
   Position position;
   std::string supply{};  ///< power supply, as technicians call it; empty: not known
@@ -100,10 +182,30 @@ struct MarkerPlace {
   friend auto operator<=>(const MarkerPlace&, const MarkerPlace&) = default;
 };
 
+/// A power supply, and what happens to looks that ask more of it than it can give.
+struct Supply {
+  enum class Overload { refuse, dim };
+  std::string name;    ///< unique; nodes and buses name it
+  double limit_a = 0;  ///< continuous current
+  Overload overload = Overload::refuse;
+  double switch_on_a = 0;  ///< the most by which its current may rise within 100 ms; 0: not limited
+  Position position;
+};
+
+/// What lamps take from their supply, in ampere, at full brightness.
+struct LampCurrents {
+  double red_a = 0;
+  double green_a = 0;
+  double blue_a = 0;
+  double node_a = 0;  ///< of a node with all lamps dark
+};
+
 struct Rig {
   std::string file;  ///< empty when made for the stage
   std::vector<Bus> buses;
   std::vector<Node> nodes;  ///< ordered by bus, then address
+  std::vector<Supply> supplies{};
+  LampCurrents currents{};
 };
 
 }  // namespace footlight

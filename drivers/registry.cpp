@@ -93,7 +93,7 @@ Result<Port> open_tcp_bus(const Bus& /*bus*/, const std::string& place, const No
   const auto where = parse_host_and_port(place, kModbusTcpPort);
   if (!where) return where.error();
   std::vector<std::uint8_t> units;
-  for (const NodeAddress& node : nodes) units.push_back(node.address);
+  for (const NodeAddress& node : nodes) units.push_back(node.unit());
   return as_port(open_modbus_tcp(where->host, where->port, std::move(units)));
 }
 
@@ -142,9 +142,13 @@ std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus) {
     const Node& node = rig.nodes[i];
     if (node.bus != bus) continue;
     addresses.push_back(
-        {NodeIndex::of(i), static_cast<std::uint8_t>(node.address), static_cast<std::uint8_t>(node.channels.size())});
+        {NodeIndex::of(i), static_cast<std::uint16_t>(node.address), static_cast<std::uint8_t>(node.channels.size())});
   }
   return addresses;
+}
+
+LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look) {
+  return bus.profile ? modbus::value_of(*bus.profile, index, look) : index;
 }
 
 Result<DriverPointer> make_driver(const Bus& bus, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,

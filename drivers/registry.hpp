@@ -24,6 +24,9 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
 /// The nodes of one bus as their driver wants them, in the order of the rig.
 [[nodiscard]] std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus);
 
+/// What a device of this bus holds in a channel that shows `look`: the index, or the device's own number.
+[[nodiscard]] LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look);
+
 /// The driver of the bus's kind (table in registry.cpp). A Modbus bus without a profile gets that of our own marker.
 /// @param port of the kind that the bus needs: ByteStream for serial, CanPort for CAN, ModbusPort for both Modbus kinds
 ///             (another kind is a programmer error)

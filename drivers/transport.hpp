@@ -86,10 +86,11 @@ class CanPort {
 /// One Modbus request at the level of libmodbus; framing and check sums belong to the port.
 struct ModbusRequest {
   std::uint8_t unit = 0;      ///< 0: broadcast, writes only, no answer
-  std::uint8_t function = 3;  ///< 0x03 read holding registers, 0x06 write one, 0x10 write several
-  std::uint16_t first_register = 0;
-  std::uint16_t count = 0;  ///< registers read, or values.size()
-  std::vector<std::uint16_t> values;
+  std::uint8_t function = 3;  ///< 0x03 read holding registers, 0x06 write one, 0x10 write several; 0x01 read coils,
+                              ///< 0x05 write one, 0x0F write several
+  std::uint16_t first_register = 0;   ///< or coil
+  std::uint16_t count = 0;            ///< registers or coils read, or values.size()
+  std::vector<std::uint16_t> values;  ///< a coil is 0 or 1, with function 0x05 0 or 0xFF00
 };
 
 struct ModbusReply {
@@ -98,7 +99,7 @@ struct ModbusReply {
   std::uint8_t unit = 0;
   std::uint8_t function = 0;
   std::uint8_t exception_code = 0;    ///< 1..11 when outcome is exception
-  std::vector<std::uint16_t> values;  ///< of a read
+  std::vector<std::uint16_t> values;  ///< of a read; a coil is 0 or 1
 };
 
 /// A Modbus line or connection. One owner. One request at a time; simulated ports never block, a port of a blocking

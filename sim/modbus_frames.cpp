@@ -10,6 +10,9 @@ namespace {
 using drivers::ModbusReply;
 using drivers::ModbusRequest;
 
+constexpr std::uint8_t kReadCoils = 0x01;
+constexpr std::uint8_t kWriteCoil = 0x05;
+constexpr std::uint8_t kWriteCoils = 0x0F;
 constexpr std::uint8_t kRead = 0x03;
 constexpr std::uint8_t kWriteOne = 0x06;
 constexpr std::uint8_t kWriteSeveral = 0x10;
@@ -19,6 +22,10 @@ void append(std::vector<std::uint8_t>& bytes, std::size_t word) {
   bytes.push_back(static_cast<std::uint8_t>((word >> 8U) & 0xFFU));
   bytes.push_back(static_cast<std::uint8_t>(word & 0xFFU));
 }
+
+constexpr std::size_t kMostCoils = 1968;  // that one request writes
+
+std::size_t coil_bytes(std::size_t count) { return (count + 7) / 8; }
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]);
@@ -37,7 +44,11 @@ ModbusReply reply_of(const ModbusRequest& request, std::span<const std::uint8_t>
   if (request.function == kRead) {
     if (pdu[1] != 2 * request.count) return garbled(request);
     for (std::size_t i = 0; i < request.count; ++i) reply.values.push_back(word_at(pdu, 2 + 2 * i));
-  } else if (request.function == kWriteSeveral && word_at(pdu, 3) != request.values.size()) {
+  } else if (request.function == kReadCoils) {
+    if (pdu[1] != coil_bytes(request.count)) return garbled(request);
+    for (std::size_t i = 0; i < request.count; ++i) reply.values.push_back((pdu[2 + i / 8] >> (i % 8)) & 1U);
+  } else if ((request.function == kWriteSeveral || request.function == kWriteCoils) &&
+             word_at(pdu, 3) != request.values.size()) {
     return garbled(request);
   }
   return reply;
@@ -49,10 +60,24 @@ std::vector<std::uint8_t> request_pdu(const ModbusRequest& request) {
   std::vector<std::uint8_t> pdu{request.function};
   append(pdu, request.first_register);
   switch (request.function) {
+    case kReadCoils:
+      FL_CHECK(request.unit != 0 && request.count >= 1 && request.count <= 2000);
+      append(pdu, request.count);
+      break;
+    case kWriteCoils:
+      FL_CHECK(!request.values.empty() && request.values.size() <= kMostCoils);
+      append(pdu, request.values.size());
+      pdu.push_back(static_cast<std::uint8_t>(coil_bytes(request.values.size())));
+      pdu.resize(pdu.size() + coil_bytes(request.values.size()));
+      for (std::size_t i = 0; i < request.values.size(); ++i) {
+        if (request.values[i] != 0) pdu[6 + i / 8] = static_cast<std::uint8_t>(pdu[6 + i / 8] | (1U << (i % 8)));
+      }
+      break;
     case kRead:
       FL_CHECK(request.unit != 0 && request.count >= 1 && request.count <= 125);
       append(pdu, request.count);
       break;
+    case kWriteCoil:
     case kWriteOne:
       FL_CHECK(request.values.size() == 1);
       append(pdu, request.values[0]);
@@ -67,6 +92,7 @@ std::vector<std::uint8_t> request_pdu(const ModbusRequest& request) {
 }
 
 std::size_t reply_pdu_size(const ModbusRequest& request) {
+  if (request.function == kReadCoils) return 2U + coil_bytes(request.count);
   return request.function == kRead ? 2U + 2U * request.count : 5U;
 }
 

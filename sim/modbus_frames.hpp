@@ -12,7 +12,7 @@ namespace footlight::sim {
 
 /// The port's side of Modbus, as a library such as libmodbus has it.
 
-/// Function code and data of a request. Functions 0x03, 0x06, 0x10; others are a programmer's error.
+/// Function code and data of a request. Functions 0x01, 0x03, 0x05, 0x06, 0x0F, 0x10; others are a programmer's error.
 [[nodiscard]] std::vector<std::uint8_t> request_pdu(const drivers::ModbusRequest& request);
 /// Bytes of the reply's function code and data when nothing goes wrong.
 [[nodiscard]] std::size_t reply_pdu_size(const drivers::ModbusRequest& request);

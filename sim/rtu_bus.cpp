@@ -32,7 +32,8 @@ RtuBus::RtuBus(const Bus& bus, const Surroundings& surroundings)
       line_(bus_, bus.bits_per_character(), silence_, around_, use_, *this) {}
 
 std::size_t RtuBus::add(std::unique_ptr<SimulatedNode> node) {
-  markers_.emplace_back(node->address(), bus_.profile.value_or(footlight_profile()), node->model());
+  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), bus_.profile.value_or(footlight_profile()),
+                        node->model(), node->unique_id());
   answers_.emplace_back();
   missed_.push_back(false);
   nodes_.push_back(std::move(node));
@@ -105,7 +106,7 @@ void RtuBus::draw_losses(int speaker, std::string& note) {
     return;
   }
   for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-    const bool concerned = request_.unit == 0 || request_.unit == nodes_[slot]->address();
+    const bool concerned = request_.unit == 0 || request_.unit == markers_[slot].address();
     missed_[slot] = concerned && nodes_[slot]->powered() && misses(nodes_[slot]->name(), note);
   }
 }

@@ -32,7 +32,7 @@ SerialBus::SerialBus(const Bus& bus, const Surroundings& surroundings)
       sent_until_(around_.world.now()) {}
 
 std::size_t SerialBus::add(std::unique_ptr<SimulatedNode> node) {
-  markers_.emplace_back(node->address(), node->model());
+  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), node->model());
   answers_.emplace_back();
   missed_.push_back(false);
   nodes_.push_back(std::move(node));

@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/simulated_node.hpp"
 
+#include <span>
+#include <utility>
+
 #include "core/check.hpp"
+#include "sim/markers/check_sums.hpp"
 
 namespace footlight::sim {
 
-SimulatedNode::SimulatedNode(const Node& node, std::string_view bus, bool has_lease, bool dead, World& world,
+SimulatedNode::SimulatedNode(const Node& node, std::string_view bus, NodeModel model, bool dead, World& world,
                              Trace& trace)
     : name_(node.name),
       bus_(bus),
-      address_(static_cast<std::uint8_t>(node.address)),
+      address_(static_cast<std::uint16_t>(node.address)),
+      unique_id_(crc32_ieee(std::span(reinterpret_cast<const std::uint8_t*>(name_.data()), name_.size()))),
       dead_(dead),
-      model_(static_cast<int>(node.channels.size()), has_lease),
+      model_(std::move(model)),
       world_(world),
       trace_(trace) {
-  FL_CHECK(node.address >= 1 && node.address <= 254);
+  FL_CHECK(node.address >= 1 && node.address <= 512);
 }
 
 void SimulatedNode::power_on() {

@@ -16,8 +16,8 @@ namespace footlight::sim {
 /// One node on its supply: power, lease timer, and what of it is worth a line in the trace.
 class SimulatedNode final : public Actor {
  public:
-  /// @param dead never gets power
-  SimulatedNode(const Node& node, std::string_view bus, bool has_lease, bool dead, World& world, Trace& trace);
+  /// @param model off  @param dead never gets power
+  SimulatedNode(const Node& node, std::string_view bus, NodeModel model, bool dead, World& world, Trace& trace);
 
   void power_on();
   void power_off();
@@ -29,7 +29,10 @@ class SimulatedNode final : public Actor {
   /// Changes with every switch of the supply: what was under way before it does not happen.
   [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::uint8_t address() const { return address_; }
+  /// As the rig has it; a marker may have taken another one since.
+  [[nodiscard]] std::uint16_t address() const { return address_; }
+  /// What its maker has given it: a check sum of its name.
+  [[nodiscard]] std::uint32_t unique_id() const { return unique_id_; }
   [[nodiscard]] const NodeModel& model() const { return model_; }
   [[nodiscard]] NodeModel& model() { return model_; }
   [[nodiscard]] LookIndex shown(int channel) const { return powered_ ? model_.shown(channel) : kDark; }
@@ -39,7 +42,8 @@ class SimulatedNode final : public Actor {
 
   std::string name_;
   std::string_view bus_;
-  std::uint8_t address_;
+  std::uint16_t address_;
+  std::uint32_t unique_id_;
   bool dead_;
   bool powered_ = false;
   bool armed_ = false;

@@ -39,13 +39,17 @@ std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surro
       return std::make_unique<TcpBus>(bus, surroundings);
     case BusKind::can:
       return std::make_unique<CanBus>(bus, surroundings);
+    case BusKind::dmx:
+      break;
   }
   FL_CHECK(false);
 }
 
-bool has_lease(const Bus& bus) {
-  const bool modbus = bus.kind == BusKind::modbus_rtu || bus.kind == BusKind::modbus_tcp;
-  return !modbus || !bus.profile || bus.profile->heartbeat_register.has_value();
+NodeModel model_of(const Node& node, const Bus& bus) {
+  const auto channels = static_cast<int>(node.channels.size());
+  if (!bus.profile) return {channels, true};
+  const bool ours = bus.profile->heartbeat_register || bus.profile->status_register;
+  return {channels, bus.profile->heartbeat_register.has_value(), ours ? kNoGuidance : kDark};
 }
 
 std::vector<NodeIndex> draw_dead(std::size_t nodes, int wanted, Rng rng) {
@@ -142,8 +146,8 @@ SimulatedRig::SimulatedRig(const Rig& rig, const Faults& faults, std::uint64_t s
     const Node& node = state.rig.nodes[i];
     SimulatedBus& bus = *state.buses.at(node.bus.at());
     const bool is_dead = std::binary_search(state.dead.begin(), state.dead.end(), NodeIndex::of(i));
-    const std::size_t slot = bus.add(
-        std::make_unique<SimulatedNode>(node, bus.bus().name, has_lease(bus.bus()), is_dead, state.world, state.trace));
+    const std::size_t slot = bus.add(std::make_unique<SimulatedNode>(node, bus.bus().name, model_of(node, bus.bus()),
+                                                                     is_dead, state.world, state.trace));
     state.places.push_back({&bus, slot});
   }
   for (auto& bus : state.buses) bus->begin();

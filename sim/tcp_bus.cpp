@@ -30,7 +30,8 @@ Duration network_time(std::size_t bytes) {
 }  // namespace
 
 std::size_t TcpBus::add(std::unique_ptr<SimulatedNode> node) {
-  markers_.emplace_back(node->address(), bus_.profile.value_or(footlight_profile()), node->model());
+  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), bus_.profile.value_or(footlight_profile()),
+                        node->model(), node->unique_id());
   connections_.push_back({kShortestLatency + around_.timing.up_to(kLongestLatency - kShortestLatency), kStart, kStart});
   nodes_.push_back(std::move(node));
   return nodes_.size() - 1;
@@ -52,7 +53,7 @@ drivers::SendStatus TcpBus::submit(const ModbusRequest& request) {
   ++generation_;
   Instant at = around_.world.now();
   for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-    const std::uint8_t unit = nodes_[slot]->address();
+    const std::uint8_t unit = markers_[slot].address();
     if (request.unit != 0 && request.unit != unit) continue;
     auto frame = tcp_frame(++transaction_, unit, pdu);
     at += network_time(frame.size());

@@ -78,11 +78,39 @@ void set_response_timeout(modbus_t* context, Duration timeout) {
   modbus_set_response_timeout(context, us / 1'000'000, us % 1'000'000);
 }
 
+/// Eight coils a byte, the first in the lowest bit.
+std::vector<std::uint8_t> packed_coils(const std::vector<std::uint16_t>& values) {
+  std::vector<std::uint8_t> bytes((values.size() + 7) / 8);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] != 0) bytes[i / 8] = static_cast<std::uint8_t>(bytes[i / 8] | (1U << (i % 8)));
+  }
+  return bytes;
+}
+
+int read_coils(modbus_t* context, const ModbusRequest& request, std::vector<std::uint16_t>& values) {
+  std::vector<std::uint8_t> coils(request.count);
+  const int count = modbus_read_bits(context, request.first_register, request.count, coils.data());
+  values.assign(coils.begin(), coils.end());
+  return count;
+}
+
+int write_coils(modbus_t* context, const ModbusRequest& request) {
+  FL_CHECK(request.values.size() == request.count);
+  const std::vector<std::uint8_t> coils(request.values.begin(), request.values.end());
+  return modbus_write_bits(context, request.first_register, request.count, coils.data());
+}
+
 /// The request behind its address, without check sum: what modbus_send_raw_request takes.
 std::vector<std::uint8_t> raw_request(std::uint8_t unit, const ModbusRequest& request) {
   const auto high = [](std::uint16_t word) { return static_cast<std::uint8_t>(word >> 8); };
   const auto low = [](std::uint16_t word) { return static_cast<std::uint8_t>(word & 0xFF); };
   std::vector<std::uint8_t> bytes{unit, request.function, high(request.first_register), low(request.first_register)};
+  if (request.function == MODBUS_FC_WRITE_MULTIPLE_COILS) {
+    const std::vector<std::uint8_t> packed = packed_coils(request.values);
+    bytes.insert(bytes.end(), {high(request.count), low(request.count), static_cast<std::uint8_t>(packed.size())});
+    bytes.insert(bytes.end(), packed.begin(), packed.end());
+    return bytes;
+  }
   if (request.function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS) {
     bytes.insert(bytes.end(), {high(request.count), low(request.count), static_cast<std::uint8_t>(2 * request.count)});
   }
@@ -114,7 +142,8 @@ Status<> LibmodbusPort::connect() {
 }
 
 SendStatus LibmodbusPort::submit(const ModbusRequest& request) {
-  FL_CHECK(request.unit != 0 || request.function != MODBUS_FC_READ_HOLDING_REGISTERS);
+  FL_CHECK(request.unit != 0 ||
+           (request.function != MODBUS_FC_READ_HOLDING_REGISTERS && request.function != MODBUS_FC_READ_COILS));
   if (busy()) return SendStatus::busy;
   if (!context_ && !connect()) return SendStatus::down;
   settle();
@@ -138,6 +167,13 @@ int LibmodbusPort::exchange(const ModbusRequest& request, std::vector<std::uint1
     case MODBUS_FC_READ_HOLDING_REGISTERS:
       values.resize(request.count);
       return modbus_read_registers(context_.get(), request.first_register, request.count, values.data());
+    case MODBUS_FC_READ_COILS:
+      return read_coils(context_.get(), request, values);
+    case MODBUS_FC_WRITE_SINGLE_COIL:
+      FL_CHECK(request.values.size() == 1);
+      return modbus_write_bit(context_.get(), request.first_register, request.values[0] != 0 ? 1 : 0);
+    case MODBUS_FC_WRITE_MULTIPLE_COILS:
+      return write_coils(context_.get(), request);
     case MODBUS_FC_WRITE_SINGLE_REGISTER:
       FL_CHECK(request.values.size() == 1);
       return modbus_write_register(context_.get(), request.first_register, request.values[0]);

@@ -83,6 +83,7 @@ Result<std::unique_ptr<Endpoint>> ServedRig::endpoint_for(const Rig& rig, BusInd
       return as_endpoint(TcpEndpoint::open(port, simulated_->modbus_line(bus)));
     }
     case BusKind::can:
+    case BusKind::dmx:
       break;
   }
   return as_endpoint(CanEndpoint::open(serving.can.at(wire.name), simulated_->can(bus)));

@@ -13,12 +13,13 @@ constexpr int kEffects = 5;
 
 }  // namespace
 
-NodeModel::NodeModel(int channels, bool has_lease) : channels_(channels), has_lease_(has_lease) {
+NodeModel::NodeModel(int channels, bool has_lease, LookIndex at_power_on)
+    : channels_(channels), has_lease_(has_lease), at_power_on_(at_power_on) {
   FL_CHECK(channels >= 1 && channels <= kChannelsPerNode);
 }
 
 void NodeModel::power_on(Instant now) {
-  showing_.fill(kNoGuidance);
+  showing_.fill(at_power_on_);
   pending_.fill(kDark);
   shown_sequence_ = 0;
   pending_sequence_ = 0;

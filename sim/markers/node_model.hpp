@@ -21,12 +21,20 @@ inline constexpr Duration kNoGuidanceAfter = milliseconds(2500);
 inline constexpr Duration kIdentifyFor = milliseconds(10'000);
 inline constexpr std::uint8_t kHighestSequence = 240;
 
+/// What a node can tell of itself.
+struct NodeHealth {
+  int battery_percent = 100;
+  int supply_mv = 24'000;
+  int temperature_c = 21;
+};
+
 /// The inside of a marker node, the same on every bus: looks pending and shown, sequence, lease, look table. Has no
 /// clock; `now` never goes back from call to call.
 class NodeModel {
  public:
   /// @param channels 1..32  @param has_lease false: a foreign device that knows no heartbeat
-  NodeModel(int channels, bool has_lease);
+  /// @param at_power_on what every channel shows then: NO-GUIDANCE, or a foreign device's own number of dark
+  NodeModel(int channels, bool has_lease, LookIndex at_power_on = kNoGuidance);
 
   /// Everything as at power-on, one more boot.
   void power_on(Instant now);
@@ -66,6 +74,7 @@ class NodeModel {
   [[nodiscard]] std::uint8_t pending_sequence() const { return pending_sequence_; }
   [[nodiscard]] NodeState state() const { return state_; }
   [[nodiscard]] std::uint16_t boots() const { return boots_; }
+  NodeHealth health;
   [[nodiscard]] Instant powered_on_at() const { return powered_on_at_; }
   /// CRC-16 over the looks shown.
   [[nodiscard]] std::uint16_t crc() const;
@@ -77,6 +86,7 @@ class NodeModel {
 
   int channels_;
   bool has_lease_;
+  LookIndex at_power_on_;
   std::array<LookIndex, kChannelsPerNode> showing_{};
   std::array<LookIndex, kChannelsPerNode> pending_{};
   std::uint8_t shown_sequence_ = 0;

@@ -188,8 +188,8 @@ TEST_F(RigFile, RefusesWrongBuses) {
       "rig.yaml:5:20: error: buses[2].url: \"http://x\" is not the URL of a bus (serial:///dev/..., rtu:///dev/..., "
       "tcp://host:502, can://can0, sim://serial, sim://rtu, sim://tcp, sim://can)\n"
       "rig.yaml:6:31: error: buses[3].url: \"can://\" is not the URL of a bus (can://can0 or sim://can)\n"
-      "rig.yaml:7:42: error: buses[4].profile: there is no device profile \"nosuch\" (a shipped one, as "
-      "footlight-marker, or a .yaml file beside the rig)\n"
+      "rig.yaml:7:42: error: buses[4].profile: there is no device profile \"nosuch\" (shipped profiles: "
+      "footlight-marker, pick-light, relay-16; or a .yaml file beside the rig)\n"
       "rig.yaml:8:33: error: buses[5].profile: the key has no meaning here (only Modbus devices have a "
       "profile)\n");
 }
@@ -256,6 +256,21 @@ TEST_F(RigFile, TakesAProfileOfItsOwn) {
   EXPECT_FALSE(profile.has_preload_sequence);
   EXPECT_FALSE(profile.latch_register.has_value());
   EXPECT_EQ(files_, (std::vector<std::string>{folder_.path("lamp.yaml").string()}));
+}
+
+TEST_F(RigFile, RefusesMoreLampsThanADeviceHas) {
+  EXPECT_EQ(messages("rig: 1\n"
+                     "buses:\n"
+                     "  - {name: r, url: \"sim://rtu\", profile: relay-16}\n"
+                     "  - {name: s, url: \"sim://rtu\", profile: relay-17}\n"
+                     "nodes: [{bus: r, address: 1, channels: [A1:H3]}]\n"
+                     "floor: {buses: r, channels_per_node: 20}\n"),
+            "rig.yaml:4:42: error: buses[1].profile: there is no device profile \"relay-17\" (did you mean "
+            "\"relay-16\"?; or a .yaml file beside the rig)\n"
+            "rig.yaml:5:40: error: nodes[0].channels: the node has 24 channels (a device of the profile \"relay-16\" "
+            "has at most 16; give the others to another node)\n"
+            "rig.yaml:6:38: error: floor.channels_per_node: the devices of the bus \"r\" have fewer than 20 channels "
+            "(at most 16, as the profile \"relay-16\" says)\n");
 }
 
 TEST(DeviceProfile, OfOurMarkerIsTheShippedOne) {

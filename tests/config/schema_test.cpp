@@ -22,6 +22,9 @@ constexpr const char* kRemedy = "run: footlight-schema SOURCE_TREE";
 
 TEST(Schema, OfShowsIsTheOneCheckedIn) { EXPECT_EQ(content("docs/schema/show.schema.json"), show_schema()) << kRemedy; }
 TEST(Schema, OfRigsIsTheOneCheckedIn) { EXPECT_EQ(content("docs/schema/rig.schema.json"), rig_schema()) << kRemedy; }
+TEST(Schema, OfProfilesIsTheOneCheckedIn) {
+  EXPECT_EQ(content("docs/schema/profile.schema.json"), profile_schema()) << kRemedy;
+}
 
 TEST(Schema, NamesItsDraftAndRefusesUnknownKeys) {
   const auto schema = nlohmann::json::parse(show_schema());

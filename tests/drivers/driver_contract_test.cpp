@@ -96,7 +96,7 @@ class SerialBench final : public Bench {
   void hear(footlight_serial::Command command, const NodeAddress& node, Sequence sequence,
             std::vector<std::uint8_t> body) {
     port_.hear(footlight_serial::encode(
-        {footlight_serial::Direction::from_node, command, node.address, kPlanByte, sequence, std::move(body)}));
+        {footlight_serial::Direction::from_node, command, node.unit(), kPlanByte, sequence, std::move(body)}));
   }
   RecordingStream port_;
 };

@@ -91,7 +91,7 @@ SendStatus CanopenDriver::preload(const NodeAddress& node, Sequence sequence, st
   FL_CHECK(looks.size() == node.channels);
   if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
-  for (const CanFrame& frame : canopen::preload(node.address, looks)) outbox_.push_back(frame);
+  for (const CanFrame& frame : canopen::preload(node.unit(), looks)) outbox_.push_back(frame);
   leaving_ = Preload{node.node, sequence, 0};
   unlatched_ = true;
   pump();
@@ -111,7 +111,7 @@ SendStatus CanopenDriver::heartbeat(Duration /*show_time*/, Instant /*now*/) {
 }
 
 SendStatus CanopenDriver::ask(const NodeAddress& node, Instant now) {
-  const NodeState* state = find(node.address);
+  const NodeState* state = find(node.unit());
   FL_CHECK(state != nullptr);
   if (state->awaits_status) return SendStatus::accepted;  // the last SYNC has asked already
   if (unlatched_) return SendStatus::busy;
@@ -150,7 +150,7 @@ SendStatus CanopenDriver::send_sync(Sequence sequence, Instant now) {
 void CanopenDriver::pump() {
   for (NodeState& node : nodes_) {
     if (!node.start_due) continue;
-    if (hand_over(canopen::nmt(canopen::NmtCommand::start, node.address.address)) != SendStatus::accepted) return;
+    if (hand_over(canopen::nmt(canopen::NmtCommand::start, node.address.unit())) != SendStatus::accepted) return;
     node.start_due = false;
   }
   while (!outbox_.empty()) {

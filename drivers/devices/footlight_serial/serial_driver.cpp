@@ -26,7 +26,7 @@ SerialDriver::SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nod
     : port_(port), plan_byte_(plan_byte), margin_(kMargin) {
   for (const NodeAddress& node : nodes) {
     FL_CHECK(node.address >= 1 && node.address <= 254);
-    FL_CHECK(boots_.emplace(node.address, std::nullopt).second);
+    FL_CHECK(boots_.emplace(node.unit(), std::nullopt).second);
   }
 }
 
@@ -54,7 +54,7 @@ SendStatus SerialDriver::preload(const NodeAddress& node, Sequence sequence, std
                                  Instant now) {
   FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
   FL_CHECK(looks.size() == node.channels);
-  const Frame frame = footlight_serial::preload(node.address, plan_byte_, sequence, looks);
+  const Frame frame = footlight_serial::preload(node.unit(), plan_byte_, sequence, looks);
   return send(frame, Awaited{node, Command::preload, sequence, looks_crc(looks)}, footlight_serial::kReceiptBody, now);
 }
 
@@ -69,7 +69,7 @@ SendStatus SerialDriver::heartbeat(Duration show_time, Instant now) {
 }
 
 SendStatus SerialDriver::ask(const NodeAddress& node, Instant now) {
-  const Frame frame = footlight_serial::status_request(node.address, plan_byte_);
+  const Frame frame = footlight_serial::status_request(node.unit(), plan_byte_);
   return send(frame, Awaited{node, Command::status}, footlight_serial::kStatusBody, now);
 }
 
@@ -144,7 +144,7 @@ void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
 
 void SerialDriver::tell_status(const NodeAddress& node, const footlight_serial::NodeStatus& status, Sequence shown,
                                EventSink& events) {
-  std::optional<std::uint16_t>& boots = boots_[node.address];
+  std::optional<std::uint16_t>& boots = boots_[node.unit()];
   if (boots && *boots != status.boots) events.on_event({DeviceEvent::Kind::booted, node.node});
   boots = status.boots;
   DeviceEvent event{DeviceEvent::Kind::showing, node.node, shown};

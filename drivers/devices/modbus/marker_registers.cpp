@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/modbus/marker_registers.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "core/check.hpp"
@@ -8,14 +11,70 @@
 namespace footlight::drivers::modbus {
 namespace {
 
+constexpr std::uint16_t kCoilOn = 0xFF00;  // of function 0x05
+
 std::uint16_t word(unsigned high, unsigned low) { return static_cast<std::uint16_t>((high << 8U) | low); }
 
-ModbusRequest write(std::uint8_t unit, int first, std::vector<std::uint16_t> values) {
-  const auto count = static_cast<std::uint16_t>(values.size());
-  return {unit, kWriteRegisters, static_cast<std::uint16_t>(first), count, std::move(values)};
+Requests write(const ModbusProfile& profile, std::uint8_t unit, int first, std::vector<std::uint16_t> values,
+               bool coils = false) {
+  const auto number = static_cast<std::uint16_t>(first);
+  if (!profile.writes_one_by_one) {
+    const auto count = static_cast<std::uint16_t>(values.size());
+    return {{unit, coils ? kWriteCoils : kWriteRegisters, number, count, std::move(values)}};
+  }
+  Requests requests;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto value = coils && values[i] != 0 ? kCoilOn : values[i];
+    requests.push_back({unit, coils ? kWriteCoil : kWriteRegister, static_cast<std::uint16_t>(number + i), 1, {value}});
+  }
+  return requests;
+}
+
+std::pair<std::uint16_t, std::uint16_t> words_of(const ModbusProfile& profile, std::uint32_t value) {
+  const auto high = static_cast<std::uint16_t>(value >> 16U);
+  const auto low = static_cast<std::uint16_t>(value & 0xFFFFU);
+  return profile.low_word_first ? std::pair(low, high) : std::pair(high, low);
+}
+
+/// The light of a lamp, 0..255 a colour.
+std::array<int, 3> light_of(const Look& look) {
+  const auto part = [&](std::uint8_t colour) { return colour * look.brightness / 255; };
+  return {part(look.colour.red), part(look.colour.green), part(look.colour.blue)};
+}
+
+long distance(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  long sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += long{a[i] - b[i]} * (a[i] - b[i]);
+  return sum;
+}
+
+bool is_dark(const Look& look) { return light_of(look) == std::array<int, 3>{}; }
+
+constexpr long kOtherEffect = 3L * 255 * 255 + 1;  // more than any two colours differ
+
+/// The code whose `distance_to` is least; the first of equals.
+template <class Code, class Distance>
+std::uint16_t nearest(const std::vector<Code>& codes, Distance distance_to) {
+  FL_CHECK(!codes.empty());
+  const auto best = std::min_element(codes.begin(), codes.end(),
+                                     [&](const Code& a, const Code& b) { return distance_to(a) < distance_to(b); });
+  return static_cast<std::uint16_t>(best->value);
 }
 
 }  // namespace
+
+LookIndex value_of(const ModbusProfile& profile, LookIndex index, const Look& look) {
+  if (!profile.shows_own_numbers()) return index;
+  const bool dark = index == kDark || is_dark(look);
+  if (profile.palette.empty()) return dark ? LookIndex{0} : LookIndex{1};
+  const auto wanted = dark ? std::array<int, 3>{} : light_of(look);
+  return static_cast<LookIndex>(nearest(profile.palette, [&](const PaletteEntry& entry) {
+    long sum = distance(wanted, light_of(entry.look));
+    if (!dark && entry.look.effect != look.effect) sum += kOtherEffect;
+    if (is_dark(entry.look) != dark) sum += 4 * kOtherEffect;
+    return sum;
+  }));
+}
 
 ModbusProfile footlight_marker() {
   ModbusProfile profile;
@@ -27,36 +86,45 @@ ModbusProfile footlight_marker() {
   profile.heartbeat_register = 0x0030;
   profile.status_register = 0x0040;
   profile.look_table_register = 0x0050;
+  profile.unique_id_register = 0x0060;
+  profile.identity_register = 0x0062;
+  profile.identity_registers = 8;
+  profile.identity_is_text = true;
+  profile.identify_register = 0x006A;
+  profile.readdress_register = 0x006C;
+  profile.health = {{"battery", 0x0048, 1, "%", false},
+                    {"supply", 0x0049, 0.001, "V", false},
+                    {"temperature", 0x004A, 0.1, "C", true}};
   return profile;
 }
 
-ModbusRequest preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence,
-                      std::span<const LookIndex> looks) {
-  FL_CHECK(!looks.empty() && looks.size() <= kChannelsPerNode);
-  std::vector<std::uint16_t> values;
-  if (profile.has_preload_sequence) values.push_back(word(plan_byte, sequence));
-  if (profile.looks_per_register == 1) {
-    values.insert(values.end(), looks.begin(), looks.end());
+Requests preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence,
+                 std::span<const LookIndex> values) {
+  FL_CHECK(!values.empty() && values.size() <= kChannelsPerNode);
+  std::vector<std::uint16_t> words;
+  if (profile.has_preload_sequence) words.push_back(word(plan_byte, sequence));
+  if (profile.coils || profile.looks_per_register == 1) {
+    words.insert(words.end(), values.begin(), values.end());
   } else {
-    for (std::size_t i = 0; i < looks.size(); i += 2) {
-      values.push_back(word(looks[i], i + 1 < looks.size() ? looks[i + 1] : 0U));
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+      words.push_back(word(values[i], i + 1 < values.size() ? values[i + 1] : 0U));
     }
   }
-  return write(unit, profile.look_register, std::move(values));
+  return write(profile, unit, profile.look_register, std::move(words), profile.coils);
 }
 
-ModbusRequest latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence) {
+Requests latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence) {
   FL_CHECK(profile.latch_register.has_value());
-  if (!profile.has_preload_sequence) return write(unit, profile.latch_register.value(), {sequence});
+  if (!profile.has_preload_sequence) return write(profile, unit, profile.latch_register.value(), {sequence});
   const std::uint16_t first = word(plan_byte, sequence);
-  return write(unit, profile.latch_register.value(),
+  return write(profile, unit, profile.latch_register.value(),
                {first, static_cast<std::uint16_t>(0x5A5AU ^ first), static_cast<std::uint16_t>(0xA5A5U ^ first)});
 }
 
-ModbusRequest heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms) {
+Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms) {
   FL_CHECK(profile.heartbeat_register.has_value());
-  return write(unit, profile.heartbeat_register.value(),
-               {static_cast<std::uint16_t>(show_time_ms >> 16U), static_cast<std::uint16_t>(show_time_ms & 0xFFFFU)});
+  const auto [first, second] = words_of(profile, show_time_ms);
+  return write(profile, unit, profile.heartbeat_register.value(), {first, second});
 }
 
 ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit) {
@@ -64,11 +132,72 @@ ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit) {
   return {unit, kReadRegisters, static_cast<std::uint16_t>(profile.status_register.value()), kStatusRegisters, {}};
 }
 
-ModbusRequest look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex index, const Look& look) {
-  FL_CHECK(profile.look_table_register.has_value());
-  return write(unit, profile.look_table_register.value(),
-               {index, word(look.colour.red, look.colour.green), word(look.colour.blue, look.brightness),
-                static_cast<std::uint16_t>(look.effect)});
+ModbusRequest looks_request(const ModbusProfile& profile, std::uint8_t unit, int channels) {
+  FL_CHECK(profile.readable_looks);
+  const int first = profile.look_register + (profile.has_preload_sequence ? 1 : 0);
+  const int count = profile.coils || profile.looks_per_register == 1 ? channels : (channels + 1) / 2;
+  return {unit,
+          profile.coils ? kReadCoils : kReadRegisters,
+          static_cast<std::uint16_t>(first),
+          static_cast<std::uint16_t>(count),
+          {}};
+}
+
+std::optional<std::vector<LookIndex>> decode_looks(const ModbusProfile& profile, int channels,
+                                                   std::span<const std::uint16_t> registers) {
+  const auto wanted = static_cast<std::size_t>(channels);
+  std::vector<LookIndex> values;
+  for (const std::uint16_t value : registers) {
+    if (!profile.coils && profile.looks_per_register == 2) {
+      values.push_back(static_cast<LookIndex>(value >> 8U));
+    } else if (value > 0xFF) {
+      return std::nullopt;
+    }
+    values.push_back(static_cast<LookIndex>(value & 0xFFU));
+  }
+  if (values.size() < wanted || values.size() > wanted + 1) return std::nullopt;
+  values.resize(wanted);
+  return values;
+}
+
+Requests look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex index, const Look& look) {
+  if (profile.look_table_register) {
+    return write(profile, unit, profile.look_table_register.value(),
+                 {index, word(look.colour.red, look.colour.green), word(look.colour.blue, look.brightness),
+                  static_cast<std::uint16_t>(look.effect)});
+  }
+  if (!profile.states || index == kDark || index > profile.states->count) return {};
+  const StateTable& states = *profile.states;
+  const int first = states.first_register + (index - 1) * states.stride;
+  std::vector<std::pair<int, std::uint16_t>> writes;
+  if (states.effect_offset) {
+    writes.emplace_back(*states.effect_offset, nearest(states.effects, [&](const EffectCode& code) {
+      return code.effect == look.effect ? 0 : code.effect == Effect::steady ? 1 : 2;
+    }));
+  }
+  if (states.colour_offset) {
+    writes.emplace_back(*states.colour_offset, nearest(states.colours, [&](const ColourCode& code) {
+      return distance(light_of({look.colour}), light_of({code.colour}));
+    }));
+  }
+  if (states.brightness_offset) {
+    writes.emplace_back(*states.brightness_offset, nearest(states.brightnesses, [&](const BrightnessCode& code) {
+      return std::abs(code.brightness - int{look.brightness});
+    }));
+  }
+  std::sort(writes.begin(), writes.end());
+  Requests requests;  // neighbours go in one request
+  for (std::size_t i = 0; i < writes.size();) {
+    std::vector<std::uint16_t> values{writes[i].second};
+    const int offset = writes[i].first;
+    while (++i < writes.size() && writes[i].first == offset + static_cast<int>(values.size())) {
+      values.push_back(writes[i].second);
+    }
+    for (ModbusRequest& request : write(profile, unit, first + offset, std::move(values))) {
+      requests.push_back(std::move(request));
+    }
+  }
+  return requests;
 }
 
 std::optional<NodeStatus> decode_status(std::span<const std::uint16_t> registers) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,29 +13,47 @@
 
 namespace footlight::drivers::modbus {
 
-// Registers of docs/wire-protocol.md, section 4, at the numbers that a device profile gives. Pure functions.
+// Registers of docs/wire-protocol.md, section 4, and of other people's devices, at the numbers that a device profile
+// gives (docs/device-profiles.md). Pure functions.
 
+inline constexpr std::uint8_t kReadCoils = 0x01;
 inline constexpr std::uint8_t kReadRegisters = 0x03;
+inline constexpr std::uint8_t kWriteCoil = 0x05;
+inline constexpr std::uint8_t kWriteRegister = 0x06;
+inline constexpr std::uint8_t kWriteCoils = 0x0F;
 inline constexpr std::uint8_t kWriteRegisters = 0x10;
 inline constexpr std::uint16_t kStatusRegisters = 6;
 
 /// The profile of our own marker (drivers/profiles/footlight-marker.yaml).
 [[nodiscard]] ModbusProfile footlight_marker();
 
-/// Sequence and plan byte (where the profile has them), then the looks. @param looks 1..32, channel 0 first
-[[nodiscard]] ModbusRequest preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
-                                    Sequence sequence, std::span<const LookIndex> looks);
+/// One write as the device takes it: one request, or one for each register or coil.
+using Requests = std::vector<ModbusRequest>;
+
+/// What the device is told for a look: the look's index, or the device's own number of what it has nearest. A lamp that
+/// is lit is never told to be dark, nor the other way round, where the palette has both.
+[[nodiscard]] LookIndex value_of(const ModbusProfile& profile, LookIndex index, const Look& look);
+
+/// Sequence and plan byte (where the profile has them), then the looks. @param values 1..32, channel 0 first, each a
+/// `value_of`
+[[nodiscard]] Requests preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
+                               Sequence sequence, std::span<const LookIndex> values);
 /// The three guarded words; for a profile without preload sequence the sequence alone. @param profile with a latch
 /// register
-[[nodiscard]] ModbusRequest latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
-                                  Sequence sequence);
+[[nodiscard]] Requests latch(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
+                             Sequence sequence);
 /// @param profile with a heartbeat register
-[[nodiscard]] ModbusRequest heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms);
+[[nodiscard]] Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms);
 /// @param profile with a status register
 [[nodiscard]] ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit);
-/// @param profile with a look table
-[[nodiscard]] ModbusRequest look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex index,
-                                       const Look& look);
+/// Reads the looks where they are written. @param profile with readable looks
+[[nodiscard]] ModbusRequest looks_request(const ModbusProfile& profile, std::uint8_t unit, int channels);
+/// What was read by `looks_request`, one value a channel; nothing when there are not as many registers as asked for.
+[[nodiscard]] std::optional<std::vector<LookIndex>> decode_looks(const ModbusProfile& profile, int channels,
+                                                                 std::span<const std::uint16_t> registers);
+/// Upload of one look: our own block of four, or a state of the device's own table. Empty: the device has no room for
+/// it, or no table.
+[[nodiscard]] Requests look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex index, const Look& look);
 
 struct NodeStatus {
   Sequence shown_sequence = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/modbus/modbus_driver.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/check.hpp"
@@ -11,6 +12,7 @@ namespace {
 constexpr std::uint8_t kBroadcast = 0;
 constexpr std::uint8_t kDeviceFailure = 4;           // the only exception that is tried again at once
 constexpr Duration kPollInterval = milliseconds(1);  // for a reply that is later than it should be
+constexpr std::uint8_t kShowing = 1;                 // state of a node; what tells no state shows
 constexpr std::uint8_t kAnyUnit = 1;                 // for budgets
 
 }  // namespace
@@ -20,28 +22,60 @@ ModbusDriver::ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::v
     : port_(port), profile_(std::move(profile)), nodes_(nodes), plan_byte_(plan_byte) {
   FL_CHECK(profile_.looks_per_register == 1 || profile_.looks_per_register == 2);
   for (const NodeAddress& node : nodes_) FL_CHECK(node.address >= 1 && node.address <= 247);
+  looks_.fill(Look{{255, 255, 255}, Effect::steady, 255});
+  looks_[kDark] = Look{{0, 0, 0}, Effect::steady, 0};
+  looks_[kNoGuidance] = no_guidance_look();
 }
 
 Capabilities ModbusDriver::capabilities() const {
   Capabilities can;
-  can.readback = profile_.status_register.has_value();
+  can.readback = profile_.status_register || profile_.readable_looks;
+  can.proves_looks = profile_.proves_looks();
   can.lease = profile_.heartbeat_register.has_value();
-  can.sequenced_latch = profile_.has_preload_sequence && profile_.latch_register.has_value();
+  // Without a latch register the driver itself holds the looks back until the latch of their sequence.
+  can.sequenced_latch = profile_.has_preload_sequence || !profile_.latch_register;
+  if (profile_.states) can.looks = profile_.states->count;
   return can;
+}
+
+std::string ModbusDriver::assumption() const {
+  if (profile_.proves_looks()) return {};
+  std::string text = capabilities().readback
+                         ? "looks are read back without a sequence: an answer later than its time-out is taken for lost"
+                         : "nothing can be read back: what the device has acknowledged is taken for shown";
+  if (!profile_.latch_register) text += "; without a latch its lamps change one node after the other";
+  if (!profile_.heartbeat_register) text += "; it keeps its looks when the controller is silent";
+  return text;
+}
+
+std::vector<LookIndex> ModbusDriver::values_of(std::span<const LookIndex> looks) const {
+  std::vector<LookIndex> values(looks.begin(), looks.end());
+  for (LookIndex& value : values) value = modbus::value_of(profile_, value, looks_[value]);
+  return values;
+}
+
+Duration ModbusDriver::time_of(const modbus::Requests& requests) const {
+  Duration sum{};
+  for (const ModbusRequest& request : requests) sum += port_.wire_time(request) + profile_.pause_after_write;
+  return sum;
 }
 
 Duration ModbusDriver::preload_time(int channels) const {
   const std::vector<LookIndex> looks(static_cast<std::size_t>(channels));
-  return port_.wire_time(modbus::preload(profile_, kAnyUnit, plan_byte_, 1, looks));
+  return time_of(modbus::preload(profile_, kAnyUnit, plan_byte_, 1, looks));
 }
 
 Duration ModbusDriver::status_time() const {
-  if (!profile_.status_register) return {};
-  return port_.wire_time(modbus::status_request(profile_, kAnyUnit));
+  if (profile_.status_register) return port_.wire_time(modbus::status_request(profile_, kAnyUnit));
+  if (profile_.readable_looks) return port_.wire_time(modbus::looks_request(profile_, kAnyUnit, profile_.channels));
+  return {};
 }
 
 Duration ModbusDriver::latch_time() const {
-  if (profile_.latch_register) return port_.wire_time(modbus::latch(profile_, kBroadcast, plan_byte_, 1));
+  if (profile_.latch_register) {
+    if (profile_.has_broadcast) return time_of(modbus::latch(profile_, kBroadcast, plan_byte_, 1));
+    return static_cast<Duration::rep>(nodes_.size()) * time_of(modbus::latch(profile_, kAnyUnit, plan_byte_, 1));
+  }
   Duration sum{};
   for (const NodeAddress& node : nodes_) sum += preload_time(node.channels);
   return sum;
@@ -49,17 +83,36 @@ Duration ModbusDriver::latch_time() const {
 
 Duration ModbusDriver::heartbeat_time() const {
   if (!profile_.heartbeat_register) return {};
-  return port_.wire_time(modbus::heartbeat(profile_, kBroadcast, 0));
+  if (profile_.has_broadcast) return time_of(modbus::heartbeat(profile_, kBroadcast, 0));
+  return static_cast<Duration::rep>(nodes_.size()) * time_of(modbus::heartbeat(profile_, kAnyUnit, 0));
 }
 
 Duration ModbusDriver::upload_time() const {
-  if (!profile_.look_table_register) return {};
-  return port_.wire_time(modbus::look_entry(profile_, kBroadcast, 1, Look{}));
+  if (profile_.has_broadcast) return time_of(modbus::look_entry(profile_, kBroadcast, 1, Look{}));
+  return static_cast<Duration::rep>(nodes_.size()) * time_of(modbus::look_entry(profile_, kAnyUnit, 1, Look{}));
 }
 
-bool ModbusDriver::ready() const { return !under_way_ && jobs_.empty() && !port_.busy(); }
+bool ModbusDriver::ready() const { return !under_way_ && jobs_.empty() && !paused_ && !port_.busy(); }
 
 SendStatus ModbusDriver::start(Instant /*now*/) { return SendStatus::accepted; }
+
+void ModbusDriver::append(std::vector<Job>& jobs, Purpose purpose, NodeIndex node, Sequence sequence,
+                          modbus::Requests requests) {
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    jobs.push_back({purpose, node, sequence, std::move(requests[i]), false, i + 1 == requests.size()});
+  }
+}
+
+std::vector<ModbusDriver::Job> ModbusDriver::to_all(
+    Purpose purpose, Sequence sequence, const std::function<modbus::Requests(std::uint8_t unit)>& make) const {
+  std::vector<Job> jobs;
+  if (profile_.has_broadcast) {
+    append(jobs, purpose, NodeIndex{}, sequence, make(kBroadcast));
+    return jobs;
+  }
+  for (const NodeAddress& node : nodes_) append(jobs, purpose, node.node, sequence, make(node.unit()));
+  return jobs;
+}
 
 SendStatus ModbusDriver::preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                                  Instant now) {
@@ -67,46 +120,66 @@ SendStatus ModbusDriver::preload(const NodeAddress& node, Sequence sequence, std
   FL_CHECK(looks.size() == node.channels);
   if (!profile_.latch_register) {
     if (!ready()) return SendStatus::busy;
-    kept_[node.node] = Kept{node, {looks.begin(), looks.end()}};
+    kept_[node.node] = Kept{node, sequence, {looks.begin(), looks.end()}};
     due_.push_back({DeviceEvent::Kind::preloaded, node.node, sequence});
     return SendStatus::accepted;
   }
-  return run(
-      {{Purpose::preload, node.node, sequence, modbus::preload(profile_, node.address, plan_byte_, sequence, looks)}},
-      now);
+  std::vector<Job> writes;
+  append(writes, Purpose::preload, node.node, sequence,
+         modbus::preload(profile_, node.unit(), plan_byte_, sequence, values_of(looks)));
+  const SendStatus status = run(std::move(writes), now);
+  if (status == SendStatus::accepted) pending_[node.node] = Written{sequence, {looks.begin(), looks.end()}};
+  return status;
 }
 
 SendStatus ModbusDriver::latch(Sequence sequence, Instant now) {
   FL_CHECK(sequence >= 1 && sequence <= kLastSequence);
-  if (profile_.latch_register) {
-    return run({{Purpose::latch, NodeIndex{}, sequence, modbus::latch(profile_, kBroadcast, plan_byte_, sequence)}},
-               now);
-  }
+  if (!ready()) return SendStatus::busy;
   std::vector<Job> writes;
-  writes.reserve(kept_.size());
-  for (const auto& [node, kept] : kept_) {
-    writes.push_back({Purpose::late_write, node, sequence,
-                      modbus::preload(profile_, kept.node.address, plan_byte_, sequence, kept.looks)});
+  if (profile_.latch_register) {
+    writes = to_all(Purpose::latch, sequence,
+                    [&](std::uint8_t unit) { return modbus::latch(profile_, unit, plan_byte_, sequence); });
+  } else {
+    for (const auto& [node, kept] : kept_) {
+      if (kept.sequence != sequence) continue;
+      append(writes, Purpose::late_write, node, sequence,
+             modbus::preload(profile_, kept.node.unit(), plan_byte_, sequence, values_of(kept.looks)));
+    }
   }
   const SendStatus status = run(std::move(writes), now);
-  if (status == SendStatus::accepted) kept_.clear();
+  if (status != SendStatus::accepted) return status;
+  for (const auto& [node, pending] : pending_) {
+    if (pending.sequence == sequence || !profile_.has_preload_sequence) written_[node] = {sequence, pending.looks};
+  }
+  for (const auto& [node, kept] : kept_) {
+    if (kept.sequence == sequence) written_[node] = {sequence, kept.looks};
+  }
+  std::erase_if(kept_, [&](const auto& entry) { return entry.second.sequence == sequence; });
   return status;
 }
 
 SendStatus ModbusDriver::heartbeat(Duration show_time, Instant now) {
   if (!profile_.heartbeat_register) return SendStatus::accepted;
   const auto show_ms = static_cast<std::uint32_t>(show_time / milliseconds(1));
-  return run({{Purpose::heartbeat, NodeIndex{}, 0, modbus::heartbeat(profile_, kBroadcast, show_ms)}}, now);
+  return run(
+      to_all(Purpose::heartbeat, 0, [&](std::uint8_t unit) { return modbus::heartbeat(profile_, unit, show_ms); }),
+      now);
 }
 
 SendStatus ModbusDriver::ask(const NodeAddress& node, Instant now) {
-  if (!profile_.status_register) return SendStatus::accepted;
-  return run({{Purpose::status, node.node, 0, modbus::status_request(profile_, node.address)}}, now);
+  if (profile_.status_register) {
+    return run({{Purpose::status, node.node, 0, modbus::status_request(profile_, node.unit())}}, now);
+  }
+  if (!profile_.readable_looks) return SendStatus::accepted;
+  return run({{Purpose::looks, node.node, 0, modbus::looks_request(profile_, node.unit(), node.channels)}}, now);
 }
 
 SendStatus ModbusDriver::upload_look(LookIndex index, const Look& look, Instant now) {
-  if (!profile_.look_table_register) return SendStatus::accepted;
-  return run({{Purpose::look, NodeIndex{}, 0, modbus::look_entry(profile_, kBroadcast, index, look)}}, now);
+  const SendStatus status =
+      run(to_all(Purpose::look, 0, [&](std::uint8_t unit) { return modbus::look_entry(profile_, unit, index, look); }),
+          now);
+  if (status == SendStatus::accepted && index != kDark && index != kNoGuidance) looks_[index] = look;
+  return status;
 }
 
 SendStatus ModbusDriver::run(std::vector<Job> jobs, Instant now) {
@@ -137,10 +210,16 @@ Instant ModbusDriver::step(Instant now, EventSink& events) {
     if (!reply && !broadcast_over) return expected_ > now ? expected_ : now + kPollInterval;
     const Job job = *std::exchange(under_way_, std::nullopt);
     if (reply && job.request.unit != kBroadcast) finish(job, *reply, events);
+    if (profile_.pause_after_write > Duration{} && job.purpose != Purpose::status && job.purpose != Purpose::looks) {
+      paused_ = true;
+      pause_until_ = now + profile_.pause_after_write;
+    }
   }
-  submit_next(now, events);
+  paused_ = paused_ && now < pause_until_;
+  if (!paused_) submit_next(now, events);
   tell_bus(events);
   if (under_way_) return expected_ > now ? expected_ : now + kPollInterval;
+  if (paused_) return pause_until_;
   return jobs_.empty() ? kNever : now + kPollInterval;
 }
 
@@ -166,15 +245,41 @@ void ModbusDriver::finish(const Job& job, const ModbusReply& reply, EventSink& e
     }
     event.kind = DeviceEvent::Kind::rejected;
     event.detail = reply.exception_code;
+    drop_rest_of(job);
     events.on_event(event);
   } else if (reply.outcome != ModbusReply::Outcome::ok || !fits) {
+    drop_rest_of(job);
     events.on_event(event);
   } else if (job.purpose == Purpose::status) {
     tell_status(job, reply, events);
-  } else if (job.purpose == Purpose::preload) {
+  } else if (job.purpose == Purpose::looks) {
+    tell_looks(job, reply, events);
+  } else if (job.purpose == Purpose::preload && job.last) {
     event.kind = DeviceEvent::Kind::preloaded;
     events.on_event(event);
   }
+}
+
+/// What is half written is begun anew, when the bus loop asks for it.
+void ModbusDriver::drop_rest_of(const Job& job) {
+  for (bool last = job.last; !last && !jobs_.empty(); jobs_.pop_front()) last = jobs_.front().last;
+}
+
+/// The device knows no sequence: its looks are compared with those written last.
+void ModbusDriver::tell_looks(const Job& job, const ModbusReply& reply, EventSink& events) {
+  const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const auto& n) { return n.node == job.node; });
+  FL_CHECK(node != nodes_.end());
+  const auto values = modbus::decode_looks(profile_, node->channels, reply.values);
+  if (!values) {
+    events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+    return;
+  }
+  const Written& written = written_[job.node];
+  const bool as_written = !written.looks.empty() && values_of(written.looks) == *values;
+  DeviceEvent event{DeviceEvent::Kind::showing, job.node, written.sequence};
+  event.crc = static_cast<std::uint16_t>(looks_crc(written.looks) ^ (as_written ? 0U : 0xFFFFU));
+  event.state = kShowing;
+  events.on_event(event);
 }
 
 void ModbusDriver::tell_status(const Job& job, const ModbusReply& reply, EventSink& events) {

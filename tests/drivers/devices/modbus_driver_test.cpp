@@ -127,7 +127,7 @@ TEST_F(ModbusDriverTest, WithoutALatchTheLooksWaitHereForTheMoment) {
   ModbusProfile profile = modbus::footlight_marker();
   profile.latch_register.reset();
   use(profile);
-  EXPECT_FALSE(driver_->capabilities().sequenced_latch);
+  EXPECT_TRUE(driver_->capabilities().sequenced_latch) << "the driver itself holds looks back until their own latch";
   ASSERT_EQ(driver_->preload(kOne, 3, kFour, now_), SendStatus::accepted);
   ASSERT_EQ(driver_->preload(kTwo, 3, kThree, now_), SendStatus::accepted);
   step();
@@ -153,8 +153,8 @@ TEST_F(ModbusDriverTest, WhatAProfileLacksIsNotSent) {
   use(profile);
   const Capabilities can = driver_->capabilities();
   EXPECT_FALSE(can.readback);
+  EXPECT_FALSE(can.proves_looks);
   EXPECT_FALSE(can.lease);
-  EXPECT_FALSE(can.sequenced_latch);
   EXPECT_FALSE(can.pushes_status);
   EXPECT_EQ(driver_->heartbeat({}, now_), SendStatus::accepted);
   EXPECT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
@@ -163,6 +163,167 @@ TEST_F(ModbusDriverTest, WhatAProfileLacksIsNotSent) {
   EXPECT_EQ(driver_->status_time(), Duration{});
   EXPECT_EQ(step(), kNever);
   EXPECT_TRUE(log_.events.empty());
+}
+
+ModbusProfile relays() {
+  ModbusProfile profile;
+  profile.name = "relay-16";
+  profile.channels = 16;
+  profile.coils = true;
+  profile.has_preload_sequence = false;
+  profile.readable_looks = true;
+  profile.has_broadcast = false;
+  return profile;
+}
+
+TEST_F(ModbusDriverTest, CoilsAreOnForEveryLookThatIsLit) {
+  use(relays());
+  ASSERT_EQ(driver_->upload_look(2, {{255, 0, 0}, Effect::blink, 0}, now_), SendStatus::accepted);
+  ASSERT_EQ(driver_->preload(kOne, 3, std::vector<LookIndex>{1, 0, 2, 9}, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+  ASSERT_EQ(port_.sent.size(), 1U) << "the look table stays here";
+  EXPECT_EQ(port_.sent[0].unit, 1);
+  EXPECT_EQ(port_.sent[0].function, 0x0F);
+  EXPECT_EQ(port_.sent[0].first_register, 0);
+  EXPECT_EQ(port_.sent[0].values, (std::vector<std::uint16_t>{1, 0, 0, 1})) << "look 2 has no brightness";
+}
+
+TEST_F(ModbusDriverTest, LooksReadBackAreComparedWithThoseLatched) {
+  use(relays());
+  EXPECT_TRUE(driver_->capabilities().readback);
+  EXPECT_FALSE(driver_->capabilities().proves_looks);
+  EXPECT_EQ(driver_->assumption(),
+            "looks are read back without a sequence: an answer later than its time-out is taken for lost; without a "
+            "latch its lamps change one node after the other; it keeps its looks when the controller is silent");
+  const std::vector<LookIndex> looks{1, 0, 2, 0};
+  ASSERT_EQ(driver_->preload(kOne, 3, looks, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  EXPECT_EQ(port_.sent.back().function, 0x01);
+  answer(Outcome::ok, {1, 0, 1, 0});
+  ASSERT_EQ(log_.count(Kind::showing), 1U);
+  EXPECT_EQ(log_.last(Kind::showing)->sequence, 0) << "nothing has been latched";
+  EXPECT_NE(log_.last(Kind::showing)->crc, looks_crc(looks));
+  ASSERT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+  answer(Outcome::ok);
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::ok, {1, 0, 1, 0});
+  EXPECT_EQ(log_.last(Kind::showing)->sequence, 3);
+  EXPECT_EQ(log_.last(Kind::showing)->crc, looks_crc(looks));
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::ok, {1, 0, 0, 0});
+  EXPECT_NE(log_.last(Kind::showing)->crc, looks_crc(looks)) << "it has been switched by somebody else";
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::ok, {1, 0});
+  EXPECT_EQ(log_.count(Kind::missed), 1U) << "too few coils";
+}
+
+TEST_F(ModbusDriverTest, ALatchTakesOnlyTheLooksOfItsSequence) {
+  use(relays());
+  ASSERT_EQ(driver_->preload(kOne, 3, kFour, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->preload(kTwo, 4, kThree, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+  answer(Outcome::ok);
+  ASSERT_EQ(port_.sent.size(), 1U);
+  EXPECT_EQ(port_.sent[0].unit, 1);
+}
+
+TEST_F(ModbusDriverTest, OneByOneTheRestOfAFailedWriteIsDropped) {
+  ModbusProfile profile = relays();
+  profile.writes_one_by_one = true;
+  use(profile);
+  ASSERT_EQ(driver_->preload(kOne, 3, std::vector<LookIndex>{1, 0, 1, 1}, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->preload(kTwo, 3, std::vector<LookIndex>{0, 0, 1}, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+  EXPECT_EQ(port_.sent[0].function, 0x05);
+  EXPECT_EQ(port_.sent[0].values, (std::vector<std::uint16_t>{0xFF00}));
+  answer(Outcome::ok);
+  EXPECT_EQ(port_.sent[1].first_register, 1);
+  EXPECT_EQ(port_.sent[1].values, (std::vector<std::uint16_t>{0}));
+  answer(Outcome::timeout);
+  ASSERT_EQ(log_.count(Kind::missed), 1U);
+  ASSERT_EQ(port_.sent.size(), 3U);
+  EXPECT_EQ(port_.sent[2].unit, 2) << "the next node goes on";
+}
+
+TEST_F(ModbusDriverTest, APauseAfterAWriteHoldsTheNextOperationBack) {
+  ModbusProfile profile = relays();
+  profile.pause_after_write = milliseconds(20);
+  use(profile);
+  ASSERT_EQ(driver_->preload(kOne, 3, kFour, now_), SendStatus::accepted);
+  step();
+  ASSERT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+  port_.answer(Outcome::ok);
+  EXPECT_EQ(step(), now_ + milliseconds(20));
+  EXPECT_FALSE(driver_->ready());
+  EXPECT_EQ(driver_->ask(kOne, now_), SendStatus::busy);
+  now_ += milliseconds(20);
+  step();
+  EXPECT_TRUE(driver_->ready());
+  EXPECT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+}
+
+TEST_F(ModbusDriverTest, WithoutBroadcastALatchGoesFromNodeToNode) {
+  ModbusProfile profile = modbus::footlight_marker();
+  profile.has_broadcast = false;
+  use(profile);
+  ASSERT_EQ(driver_->latch(1, now_), SendStatus::accepted);
+  answer(Outcome::ok);
+  answer(Outcome::ok);
+  ASSERT_EQ(port_.sent.size(), 2U);
+  EXPECT_EQ(port_.sent[0].unit, 1);
+  EXPECT_EQ(port_.sent[1].unit, 2);
+  EXPECT_TRUE(driver_->ready());
+  EXPECT_TRUE(log_.events.empty());
+}
+
+TEST_F(ModbusDriverTest, AStateIsWrittenByTheDevicesOwnNumbers) {
+  ModbusProfile profile;
+  profile.has_preload_sequence = false;
+  profile.look_register = 8700;
+  profile.looks_per_register = 1;
+  profile.states = StateTable{6300,
+                              11,
+                              2,
+                              0,
+                              1,
+                              6,
+                              {{1, Effect::steady}, {2, Effect::blink}},
+                              {{0, {0, 255, 0}}, {1, {255, 0, 0}}},
+                              {{0, 255}, {2, 64}}};
+  use(profile);
+  EXPECT_EQ(driver_->capabilities().looks, 2);
+  ASSERT_EQ(driver_->upload_look(2, {{250, 20, 0}, Effect::blink, 90}, now_), SendStatus::accepted);
+  port_.taken = false;
+  step();
+  port_.taken = false;
+  step();
+  ASSERT_EQ(port_.sent.size(), 2U);
+  EXPECT_EQ(port_.sent[0].first_register, 6311) << "effect and colour are neighbours";
+  EXPECT_EQ(port_.sent[0].values, (std::vector<std::uint16_t>{2, 1}));
+  EXPECT_EQ(port_.sent[1].first_register, 6317);
+  EXPECT_EQ(port_.sent[1].values, (std::vector<std::uint16_t>{2}));
+  ASSERT_TRUE(driver_->ready());
+  ASSERT_EQ(driver_->upload_look(3, {}, now_), SendStatus::accepted);
+  EXPECT_EQ(port_.sent.size(), 2U) << "the device has no third state";
+}
+
+TEST(ModbusPalette, TheNearestColourOfTheSameEffectIsTakenAndDarkStaysDark) {
+  ModbusProfile profile;
+  profile.palette = {{0, {{0, 0, 0}}}, {1, {{255, 0, 0}}}, {2, {{0, 0, 255}}}, {3, {{255, 0, 0}, Effect::blink}}};
+  const auto value = [&](Look look) { return int{modbus::value_of(profile, 7, look)}; };
+  EXPECT_EQ(value({{200, 40, 0}}), 1);
+  EXPECT_EQ(value({{20, 40, 200}}), 2);
+  EXPECT_EQ(value({{200, 40, 0}, Effect::blink}), 3);
+  EXPECT_EQ(value({{20, 40, 200}, Effect::blink}), 3) << "who blinks has to move: the effect tells more";
+  EXPECT_EQ(value({{10, 0, 0}}), 1) << "lit, though nearer to dark";
+  EXPECT_EQ(value({{255, 0, 0}, Effect::steady, 0}), 0);
+  EXPECT_EQ(int{modbus::value_of(profile, kDark, {{0, 0, 0}, Effect::steady, 0})}, 0);
 }
 
 TEST_F(ModbusDriverTest, ThirtyTwoLooksAt115200BdTakeTheirArithmetic) {

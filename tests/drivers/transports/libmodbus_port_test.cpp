@@ -65,16 +65,16 @@ TEST_F(RtuPort, PutsTheDocumentedBytesOnTheLine) {
   const Look grass{{0x7C, 0xFC, 0x00}, Effect::blink, 200};
   std::vector<LookIndex> looks;
   for (unsigned i = 0; i < 32; ++i) looks.push_back(static_cast<LookIndex>(7 * i));
-  for (const auto& [name, request] :
-       std::vector<std::pair<std::string, ModbusRequest>>{{"latch", modbus::latch(marker, 0, 0xA3, 17)},
-                                                          {"heartbeat", modbus::heartbeat(marker, 0, 0x12345678)},
-                                                          {"look", modbus::look_entry(marker, 0, 5, grass)}}) {
+  for (const auto& [name, request] : std::vector<std::pair<std::string, ModbusRequest>>{
+           {"latch", modbus::latch(marker, 0, 0xA3, 17).front()},
+           {"heartbeat", modbus::heartbeat(marker, 0, 0x12345678).front()},
+           {"look", modbus::look_entry(marker, 0, 5, grass).front()}}) {
     ASSERT_EQ(port_->submit(request), SendStatus::accepted);
     EXPECT_FALSE(port_->busy()) << "a broadcast is over when it is sent";
     EXPECT_EQ(port_->poll(), std::nullopt);
     EXPECT_EQ(terminal_.read(rtu_request_bytes(request)), golden.bytes(name)) << name;
   }
-  exchange(modbus::preload(marker, 7, 0xA3, 17, looks), kReadAnswer);
+  exchange(modbus::preload(marker, 7, 0xA3, 17, looks).front(), kReadAnswer);
   EXPECT_EQ(requested_, golden.bytes("preload-32"));
   exchange(modbus::status_request(marker, 7), kReadAnswer);
   EXPECT_EQ(requested_, golden.bytes("ask"));

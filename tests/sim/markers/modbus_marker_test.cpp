@@ -180,5 +180,116 @@ TEST(ModbusMarkerProperty, NoBytesBreakItAndEveryAnswerIsSealed) {
   }));
 }
 
+TEST_F(ModbusMarkerTest, SaysWhoItIs) {
+  ModbusMarker other(7, footlight_profile(), model, 0x12345678);
+  EXPECT_EQ(other.receive_rtu(sealed({7, 3, 0, 0x60, 0, 2}), now), sealed({7, 3, 4, 0x12, 0x34, 0x56, 0x78}));
+  EXPECT_EQ(other.receive_rtu(sealed({7, 3, 0, 0x62, 0, 2}), now), sealed({7, 3, 4, 'f', 'o', 'o', 't'}));
+}
+
+TEST_F(ModbusMarkerTest, TellsItsHealth) {
+  model.health = {87, 23'456, -4};
+  EXPECT_EQ(ask({7, 3, 0, 0x48, 0, 3}), sealed({7, 3, 6, 0, 87, 0x5B, 0xA0, 0xFF, 0xD8}));  // -40 tenths
+}
+
+TEST_F(ModbusMarkerTest, ShowsWhichOneItIs) {
+  EXPECT_EQ(ask({7, 6, 0, 0x6A, 0, 1}), sealed({7, 6, 0, 0x6A, 0, 1}));
+  EXPECT_TRUE(model.identifying(now));
+  EXPECT_EQ(ask({7, 6, 0, 0x6A, 0, 0}), sealed({7, 6, 0, 0x6A, 0, 0}));
+  EXPECT_FALSE(model.identifying(now));
+}
+
+TEST_F(ModbusMarkerTest, TakesANewAddressUnderItsOwnUniqueId) {
+  ModbusMarker other(7, footlight_profile(), model, 0x12345678);
+  const auto write = [&](int unit, int id_low, int guard) {
+    return other.receive_rtu(sealed({static_cast<std::uint8_t>(unit), 0x10, 0, 0x6C, 0, 4, 8, 0x12, 0x34, 0x56,
+                                     static_cast<std::uint8_t>(id_low), 0, 9, 0x5A, static_cast<std::uint8_t>(guard)}),
+                             now);
+  };
+  EXPECT_EQ(write(7, 0x79, 0x5A ^ 9), refusal(0x10, 3)) << "another device is meant";
+  EXPECT_EQ(write(7, 0x78, 0), refusal(0x10, 3)) << "wrong guard";
+  EXPECT_EQ(other.address(), 7);
+  EXPECT_TRUE(write(0, 0x78, 0x5A ^ 9).empty());
+  EXPECT_EQ(other.address(), 9);
+  EXPECT_TRUE(other.receive_rtu(sealed({7, 3, 0, 0x40, 0, 1}), now).empty()) << "it is not there any more";
+  EXPECT_FALSE(other.receive_rtu(sealed({9, 3, 0, 0x40, 0, 1}), now).empty());
+}
+
+ModbusProfile relay_profile() {
+  ModbusProfile profile;
+  profile.name = "relay";
+  profile.coils = true;
+  profile.look_register = 2;
+  profile.has_preload_sequence = false;
+  profile.readable_looks = true;
+  profile.has_broadcast = false;
+  profile.address_register = 0x4000;
+  profile.restarts_for_address = true;
+  return profile;
+}
+
+struct RelayTest : ModbusMarkerTest {
+  RelayTest() : ModbusMarkerTest(relay_profile()) {
+    model.take_staged(0, now);
+    model.stage(0, std::vector<LookIndex>{0, 0, 0});
+    model.take_staged(0, now);
+  }
+};
+
+TEST_F(RelayTest, CoilsAreWrittenTogetherOrOneByOneAndReadBack) {
+  EXPECT_EQ(ask({7, 0x0F, 0, 2, 0, 3, 1, 0b101}), sealed({7, 0x0F, 0, 2, 0, 3}));
+  EXPECT_EQ(model.shown(0), 1);
+  EXPECT_EQ(model.shown(1), 0);
+  EXPECT_EQ(model.shown(2), 1);
+  EXPECT_EQ(ask({7, 5, 0, 3, 0xFF, 0}), sealed({7, 5, 0, 3, 0xFF, 0}));
+  EXPECT_EQ(ask({7, 1, 0, 2, 0, 3}), sealed({7, 1, 1, 0b111}));
+  EXPECT_EQ(ask({7, 1, 0, 3, 0, 2}), sealed({7, 1, 1, 0b11}));
+}
+
+TEST_F(RelayTest, RefusesWhatItDoesNotHave) {
+  EXPECT_EQ(ask({7, 0x0F, 0, 2, 0, 4, 1, 1}), refusal(0x0F, 2));
+  EXPECT_EQ(ask({7, 0x0F, 0, 1, 0, 1, 1, 1}), refusal(0x0F, 2));
+  EXPECT_EQ(ask({7, 0x0F, 0, 2, 0, 3, 2, 1, 0}), refusal(0x0F, 3));
+  EXPECT_EQ(ask({7, 5, 0, 2, 0, 1}), refusal(5, 3));
+  EXPECT_EQ(ask({7, 1, 0, 4, 0, 2}), refusal(1, 2));
+  EXPECT_EQ(ask({7, 3, 0, 2, 0, 1}), refusal(3, 2)) << "coils are no registers";
+  EXPECT_TRUE(ask({0, 5, 0, 2, 0xFF, 0}).empty());
+  EXPECT_EQ(model.shown(0), 0) << "it knows no broadcast";
+}
+
+TEST_F(RelayTest, ANewAddressCountsAfterPowerOn) {
+  EXPECT_EQ(ask({7, 6, 0x40, 0, 0, 12}), sealed({7, 6, 0x40, 0, 0, 12}));
+  EXPECT_EQ(ask({7, 3, 0x40, 0, 0, 1}), sealed({7, 3, 2, 0, 12}));
+  EXPECT_EQ(marker.address(), 7);
+  marker.power_on();
+  EXPECT_EQ(marker.address(), 12);
+  EXPECT_TRUE(ask({7, 1, 0, 2, 0, 1}).empty());
+  EXPECT_EQ(ask({12, 6, 0x40, 0, 0, 0}), sealed({12, 0x86, 3})) << "0 is nobody's address";
+}
+
+struct StateLampTest : ModbusMarkerTest {
+  static ModbusProfile profile() {
+    ModbusProfile profile;
+    profile.has_preload_sequence = false;
+    profile.look_register = 10;
+    profile.looks_per_register = 1;
+    profile.readable_looks = true;
+    profile.states = StateTable{
+        100, 4, 2, 0, 1, {}, {{1, Effect::steady}, {2, Effect::blink}}, {{0, {0, 255, 0}}, {1, {255, 0, 0}}}, {}};
+    return profile;
+  }
+  StateLampTest() : ModbusMarkerTest(profile()) {}
+};
+
+TEST_F(StateLampTest, ItsStatesAreFilledOnceAndThenSwitched) {
+  EXPECT_EQ(ask({7, 0x10, 0, 104, 0, 2, 4, 0, 2, 0, 1}), sealed({7, 0x10, 0, 104, 0, 2}));
+  EXPECT_EQ(model.look(2).effect, Effect::blink);
+  EXPECT_EQ(model.look(2).colour, (Colour{255, 0, 0}));
+  EXPECT_EQ(ask({7, 6, 0, 101, 0, 5}), refusal(6, 3)) << "no such colour";
+  EXPECT_EQ(ask({7, 6, 0, 11, 0, 2}), sealed({7, 6, 0, 11, 0, 2}));
+  EXPECT_EQ(model.shown(1), 2);
+  EXPECT_EQ(ask({7, 3, 0, 11, 0, 1}), sealed({7, 3, 2, 0, 2}));
+  EXPECT_EQ(ask({7, 6, 0, 11, 0, 3}), refusal(6, 3)) << "no such state";
+}
+
 }  // namespace
 }  // namespace footlight::sim

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/device_bus.hpp"
+#include "controller/bus_service.hpp"
+
+namespace footlight::app {
+
+/// Buses of a rig with their nodes and what is assumed of them.
+[[nodiscard]] std::string rig_text(const Rig& rig, const std::vector<std::string>& assumptions);
+[[nodiscard]] std::string rig_json(const Rig& rig, const std::vector<std::string>& assumptions);
+
+/// What a scan has found, by address.
+[[nodiscard]] std::string scan_text(const DeviceBus& bus, const std::vector<controller::FoundNode>& found);
+[[nodiscard]] std::string scan_json(const DeviceBus& bus, const std::vector<controller::FoundNode>& found);
+
+/// How nodes are: last seen, errors, latency, what they tell of themselves.
+[[nodiscard]] std::string health_text(const DeviceBus& bus, const std::vector<controller::NodeHealth>& health);
+[[nodiscard]] std::string health_json(const DeviceBus& bus, const std::vector<controller::NodeHealth>& health,
+                                      const std::string& verdict);
+
+}  // namespace footlight::app

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/device_profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include "config/field.hpp"
+#include "tests/config/show_folder.hpp"
+
+namespace footlight::config {
+namespace {
+
+class ProfileFile : public ::testing::Test {
+ protected:
+  /// What is wrong with a profile, its path shortened.
+  std::string messages(const std::string& yaml) {
+    folder_.write("lamp.yaml", yaml);
+    const std::string file = folder_.path("lamp.yaml").string();
+    Diagnostics diagnostics;
+    EXPECT_EQ(read_profile(file, diagnostics), std::nullopt);
+    std::string text = diagnostics.to_text();
+    for (auto at = text.find(file); at != std::string::npos; at = text.find(file, at))
+      text.replace(at, file.size(), "lamp.yaml");
+    return text;
+  }
+  ModbusProfile right(const std::string& yaml) {
+    Diagnostics diagnostics;
+    folder_.write("lamp.yaml", yaml);
+    const auto profile = read_profile(folder_.path("lamp.yaml"), diagnostics);
+    EXPECT_TRUE(profile.has_value()) << diagnostics.to_text();
+    return profile.value_or(ModbusProfile{});
+  }
+  ShowFolder folder_;
+};
+
+TEST_F(ProfileFile, EveryShippedProfileIsRight) {
+  EXPECT_EQ(shipped_profiles(), (std::vector<std::string>{"footlight-marker", "pick-light", "relay-16"}));
+  for (const std::string& name : shipped_profiles()) {
+    Diagnostics diagnostics;
+    const auto profile = read_profile(find_profile(name, "/").value(), diagnostics);
+    ASSERT_TRUE(profile) << diagnostics.to_text();
+    EXPECT_EQ(profile->name, name) << "the name is the file's";
+    EXPECT_TRUE(diagnostics.empty());
+  }
+}
+
+TEST_F(ProfileFile, OfARelayModuleHasCoils) {
+  Diagnostics diagnostics;
+  const ModbusProfile relays = read_profile(find_profile("relay-16", "/").value(), diagnostics).value();
+  EXPECT_TRUE(relays.coils);
+  EXPECT_EQ(relays.channels, 16);
+  EXPECT_FALSE(relays.has_preload_sequence);
+  EXPECT_TRUE(relays.readable_looks);
+  EXPECT_FALSE(relays.has_broadcast);
+  EXPECT_TRUE(relays.restarts_for_address);
+  EXPECT_FALSE(relays.proves_looks());
+}
+
+TEST_F(ProfileFile, ReadsStatesPaletteHealthAndQuirks) {
+  const ModbusProfile profile = right(
+      "profile: 1\nname: lamp\nlook_register: 7\nlooks_per_register: 1\n"
+      "states: {register: 0x100, stride: 8, count: 5, effect_at: 7, effects: [{effect: pulse, value: 9}]}\n"
+      "health: [{name: battery, register: 50, scale: 0.5, unit: \"%\", signed: true}]\n"
+      "word_order: low-first\nquirks: [write-one-by-one, no-broadcast]\npause_after_write: 20 ms\n");
+  ASSERT_TRUE(profile.states);
+  EXPECT_EQ(profile.states->first_register, 256);
+  EXPECT_EQ(profile.states->effect_offset, 7);
+  EXPECT_EQ(profile.states->effects, (std::vector<EffectCode>{{9, Effect::pulse}}));
+  EXPECT_EQ(profile.health, (std::vector<HealthRegister>{{"battery", 50, 0.5, "%", true}}));
+  EXPECT_TRUE(profile.low_word_first);
+  EXPECT_TRUE(profile.writes_one_by_one);
+  EXPECT_FALSE(profile.has_broadcast);
+  EXPECT_EQ(profile.pause_after_write, milliseconds(20));
+  const ModbusProfile colours = right(
+      "profile: 1\nname: lamp\nlook_register: 7\n"
+      "palette: [{value: 3, colour: \"#000000\"}, {value: 5, colour: \"#FF8000\", effect: blink}]\n");
+  EXPECT_EQ(colours.palette, (std::vector<PaletteEntry>{{3, {{0, 0, 0}}}, {5, {{255, 128, 0}, Effect::blink}}}));
+}
+
+TEST_F(ProfileFile, RefusesUnknownKeysAndValuesWithAGuess) {
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_regster: 7\nquirks: [no-broadcst]\n"),
+            "lamp.yaml:1:1: error: one of the keys look_register, look_coil is missing (give exactly one of them)\n"
+            "lamp.yaml:3:1: error: look_regster: unknown key (did you mean \"look_register\"?)\n"
+            "lamp.yaml:4:10: error: quirks[0]: \"no-broadcst\" is not a quirk that we know (did you mean "
+            "\"no-broadcast\"?)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 70000\n"),
+            "lamp.yaml:3:16: error: look_register: \"70000\" is out of range (0 to 65535)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\nlook_coil: 0\n"),
+            "lamp.yaml:4:1: error: look_coil: does not go with \"look_register\" (give exactly one of look_register, "
+            "look_coil)\n");
+}
+
+TEST_F(ProfileFile, RefusesAPaletteThatCannotBeDarkOrRepeatsANumber) {
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\npalette:\n"
+                     "  - {value: 1, colour: red}\n  - {value: 2, colour: \"#FF0000\"}\n"
+                     "  - {value: 2, colour: \"#00FF00\"}\n  - {value: 300, colour: \"#00FF00\"}\n"),
+            "lamp.yaml:5:3: error: palette: the palette has nothing dark (an entry of colour \"#000000\" and one of "
+            "another colour)\n"
+            "lamp.yaml:5:24: error: palette[0].colour: \"red\" is not a colour (#RRGGBB)\n"
+            "lamp.yaml:7:13: error: palette[2].value: the value 2 stands here for the second time (each once)\n"
+            "lamp.yaml:8:13: error: palette[3].value: \"300\" is out of range (0 to 255)\n");
+}
+
+TEST_F(ProfileFile, RefusesStatesWithoutNumbersOrBeyondTheirStride) {
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\n"
+                     "states: {register: 100, stride: 3, count: 4, effect_at: 3, colours: [{colour: \"#FF0000\", "
+                     "value: 1}]}\n"),
+            "lamp.yaml:4:57: error: states.effect_at: the register 3 belongs to the next state (below the stride of "
+            "3)\n"
+            "lamp.yaml:4:57: error: states.effect_at: the device's numbers of its effects are missing (list them under "
+            "effects)\n"
+            "lamp.yaml:4:69: error: states.colours: the states have colours and nowhere to write them (give colour_at "
+            "as well)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\nstates: {register: 65000, stride: 600, count: 1}\n"),
+            "lamp.yaml:4:1: error: states: the states say neither effect nor colour nor brightness (give at least one "
+            "of effect_at, colour_at, brightness_at)\n"
+            "lamp.yaml:4:9: error: states: the states go beyond register 65535 (a smaller register, stride or "
+            "count)\n");
+}
+
+TEST_F(ProfileFile, RefusesKeysThatMeanNothingTogether) {
+  EXPECT_EQ(
+      messages("profile: 1\nname: lamp\nlook_coil: 65530\nlooks_per_register: 2\npreload_sequence: true\n"
+               "quirks: write-one-by-one\nreaddress_register: 9\n"),
+      "lamp.yaml:3:12: error: look_coil: the looks of 32 channels go beyond 65535 (a smaller number)\n"
+      "lamp.yaml:4:1: error: looks_per_register: the key has no meaning here (only registers hold several "
+      "looks)\n"
+      "lamp.yaml:5:19: error: preload_sequence: coils have no room for a sequence (false, or look_register)\n"
+      "lamp.yaml:5:19: error: preload_sequence: a sequence and its looks are one write, and this device takes one "
+      "register at a time (false, or no quirk write-one-by-one)\n"
+      "lamp.yaml:7:21: error: readdress_register: nobody can be meant without a unique id (give "
+      "unique_id_register as well)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\nlook_table_register: 80\n"
+                     "palette: [{value: 0, colour: \"#000000\"}, {value: 1, colour: \"#FFFFFF\"}]\n"),
+            "lamp.yaml:5:10: error: palette: a device with a palette has no look table to fill (give one of palette, "
+            "states, look_table_register)\n");
+}
+
+}  // namespace
+}  // namespace footlight::config
