@@ -44,12 +44,8 @@ struct DeviceEvent {
     booted,     ///< the node has restarted and shows NO-GUIDANCE
     missed,     ///< no answer in time, or a wrong one
     rejected,   ///< the device refused (Modbus exception, EMCY); `detail` is its code
-<<<<<<< HEAD
-    bus_down,   ///< on CAN `detail` is the CanState
-=======
     content,    ///< a wearable has taken the content of channel `detail` for latch `sequence`
-    bus_down,
->>>>>>> 6ffa52f (core, config, drivers, sim: device profiles for other people's Modbus lamps)
+    bus_down,   ///< on CAN `detail` is the CanState
     bus_up,
   };
   /// When a request that was refused may be sent again.

@@ -21,7 +21,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-<<<<<<< HEAD
 constexpr CanFrame kFrame{.id = 0x201, .length = 2, .data = {1, 2}};
 
 std::unique_ptr<CanPort> open_port(const std::string& interface) {
@@ -47,14 +46,6 @@ bool becomes(CanPort& port, CanState state) {
   return eventually([&] {
     CanFrame frame;
     while (port.receive(frame)) {
-=======
-class Sja1000 : public ::testing::Test {
- protected:
-  Sja1000() {
-    for (const char* name : {"can0", "can1"}) {
-      run("ip link set " + std::string(name) + " down; ip link set " + name +
-          " up type can bitrate 500000 restart-ms 100");
->>>>>>> 6ffa52f (core, config, drivers, sim: device profiles for other people's Modbus lamps)
     }
     return port.state() == state;
   });
