@@ -95,9 +95,8 @@ Result<std::unique_ptr<DeviceBus>> DeviceBus::open(Session& session, const Devic
 
 Status<> DeviceBus::connect(const DeviceBusChoice& choice) {
   nodes_ = drivers::node_addresses(rig_, index_);
-  std::ranges::stable_sort(nodes_, {}, [&](const drivers::NodeAddress& node) {
-    return rig_.nodes[node.node.at()].position.line;
-  });
+  std::ranges::stable_sort(nodes_, {},
+                           [&](const drivers::NodeAddress& node) { return rig_.nodes[node.node.at()].position.line; });
   drivers::PortReference reference;
   if (choice.simulated || bus().simulated()) {
     sim::Faults faults;

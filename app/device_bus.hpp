@@ -18,12 +18,12 @@ namespace footlight::app {
 
 /// Which bus a technician means.
 struct DeviceBusChoice {
-  std::string bus;             ///< its name in the rig of `show`, or a URL
-  std::string show;            ///< show file; empty: show.yaml in this folder, where the bus is no URL
-  std::string profile;         ///< of a URL's Modbus devices; empty: our own marker
-  int bits_per_second = 0;     ///< of a URL; 0: as rigs have it
-  bool simulated = false;      ///< the rig's nodes in virtual time, whatever its URLs
-  std::string faults;          ///< of the simulated ones
+  std::string bus;          ///< its name in the rig of `show`, or a URL
+  std::string show;         ///< show file; empty: show.yaml in this folder, where the bus is no URL
+  std::string profile;      ///< of a URL's Modbus devices; empty: our own marker
+  int bits_per_second = 0;  ///< of a URL; 0: as rigs have it
+  bool simulated = false;   ///< the rig's nodes in virtual time, whatever its URLs
+  std::string faults;       ///< of the simulated ones
   std::uint64_t seed = 1;
 };
 

@@ -45,10 +45,9 @@ Result<std::pair<std::uint16_t, std::uint16_t>> range_of(const std::string& text
   const auto dash = text.find('-');
   int first = 0;
   int end = 0;
-  const bool read = dash == std::string::npos
-                        ? read_number(text, first) && read_number(text, end)
-                        : read_number(std::string_view(text).substr(0, dash), first) &&
-                              read_number(std::string_view(text).substr(dash + 1), end);
+  const bool read = dash == std::string::npos ? read_number(text, first) && read_number(text, end)
+                                              : read_number(std::string_view(text).substr(0, dash), first) &&
+                                                    read_number(std::string_view(text).substr(dash + 1), end);
   if (!read || first < 1 || end < first || end > last) {
     return input_error(fmt::format("--addresses: {} is no range of addresses on this bus (as 1-32, within 1-{})",
                                    config::in_quotes(text), last));
@@ -184,10 +183,9 @@ int health(Session& session, const Options& options) {
 int test(Session& session, const Options& options) {
   const auto duration = config::parse_quantity(options.duration, config::Dimension::time);
   if (!duration.value || *duration.value <= 0 || *duration.value > kLongestTestS) {
-    return session.fail(input_error("--duration: " +
-                                    (duration.value ? config::in_quotes(options.duration) + " is out of range"
-                                                    : duration.text) +
-                                    " (a time, as 10 s or 5 min, at most a day)"));
+    return session.fail(input_error(
+        "--duration: " + (duration.value ? config::in_quotes(options.duration) + " is out of range" : duration.text) +
+        " (a time, as 10 s or 5 min, at most a day)"));
   }
   auto bus = DeviceBus::open(session, options.choice);
   if (!bus) return session.fail(bus.error());
@@ -220,14 +218,16 @@ CLI::App* add_work(CLI::App& devices, Session& session, Chosen& chosen, const st
                    const char* name, const char* what, Work work) {
   CLI::App* command = devices.add_subcommand(name, what);
   session.add_options(*command, true);
-  command->callback([&session, &chosen, options, work] { chosen = [&session, options, work] { return work(session, *options); }; });
+  command->callback(
+      [&session, &chosen, options, work] { chosen = [&session, options, work] { return work(session, *options); }; });
   return command;
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& program, Session& session, Chosen& chosen) {
-  CLI::App* devices = program.add_subcommand("devices", "Find, identify, readdress and test the markers on their buses");
+  CLI::App* devices =
+      program.add_subcommand("devices", "Find, identify, readdress and test the markers on their buses");
   devices->require_subcommand(1);
   auto options = std::make_shared<Options>();
   CLI::App* command = add_work(*devices, session, chosen, options, "list", "The buses and nodes of a rig", list);

@@ -34,9 +34,9 @@ std::string said_of(const FoundNode& found) {
     case FoundNode::Kind::present:
       return found.expected ? "" : "not in the rig";
     case FoundNode::Kind::twofold:
-      return found.identities.size() > 1
-                 ? fmt::format("{} devices share this address: set-address one of them by --id", found.identities.size())
-                 : "answers over each other: two devices of one address, or a bad line";
+      return found.identities.size() > 1 ? fmt::format("{} devices share this address: set-address one of them by --id",
+                                                       found.identities.size())
+                                         : "answers over each other: two devices of one address, or a bad line";
     case FoundNode::Kind::ghost:
       return "heard now and then: noise or a loose wire, perhaps nobody";
     case FoundNode::Kind::absent:
@@ -57,8 +57,9 @@ std::string histogram_of(const LatencyHistogram& latency) {
   std::string text;
   for (std::size_t i = 0; i < latency.counts().size(); ++i) {
     if (latency.counts()[i] == 0) continue;
-    const std::string upto = i < LatencyHistogram::kUpToMs.size() ? fmt::format("<={} ms", LatencyHistogram::kUpToMs[i])
-                                                                  : fmt::format(">{} ms", LatencyHistogram::kUpToMs.back());
+    const std::string upto = i < LatencyHistogram::kUpToMs.size()
+                                 ? fmt::format("<={} ms", LatencyHistogram::kUpToMs[i])
+                                 : fmt::format(">{} ms", LatencyHistogram::kUpToMs.back());
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", upto, latency.counts()[i]);
   }
   return text;
@@ -118,13 +119,15 @@ std::string scan_text(const DeviceBus& bus, const std::vector<FoundNode>& found)
     for (const auto& identity : node.identities) says += (says.empty() ? "" : " + ") + id_of(identity);
     const std::string said = said_of(node);
     if (!said.empty()) says += (says.empty() ? "" : "; ") + said;
-    text += fmt::format("{:>7}  {:<20} {:<8} {:>3}/{:<3}  {}\n", node.address, node.expected ? bus.name_of(node.address) : "-",
-                        to_text(node.kind), node.heard, node.rounds, says);
+    text +=
+        fmt::format("{:>7}  {:<20} {:<8} {:>3}/{:<3}  {}\n", node.address,
+                    node.expected ? bus.name_of(node.address) : "-", to_text(node.kind), node.heard, node.rounds, says);
   }
-  return text + fmt::format("{} of {} nodes of the rig answer; {} found", 
-                            std::ranges::count_if(found, [](const FoundNode& node) {
-                              return node.expected && node.kind == FoundNode::Kind::present;
-                            }),
+  return text + fmt::format("{} of {} nodes of the rig answer; {} found",
+                            std::ranges::count_if(found,
+                                                  [](const FoundNode& node) {
+                                                    return node.expected && node.kind == FoundNode::Kind::present;
+                                                  }),
                             bus.nodes().size(), present);
 }
 

@@ -25,11 +25,11 @@ struct FoundNode {
   };
   Kind kind = Kind::absent;
   std::uint16_t address = 0;
-  bool expected = false;                         ///< the rig has a node there
-  int rounds = 0;                                ///< questions
-  int heard = 0;                                 ///< of them, those with an answer that was understood
-  int garbled = 0;                               ///< of them, those with an answer that nobody understands
-  std::vector<drivers::Identity> identities;     ///< different ones; one where the device is present
+  bool expected = false;                      ///< the rig has a node there
+  int rounds = 0;                             ///< questions
+  int heard = 0;                              ///< of them, those with an answer that was understood
+  int garbled = 0;                            ///< of them, those with an answer that nobody understands
+  std::vector<drivers::Identity> identities;  ///< different ones; one where the device is present
 };
 
 [[nodiscard]] std::string_view to_text(FoundNode::Kind kind);

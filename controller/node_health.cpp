@@ -36,9 +36,7 @@ void LatencyHistogram::add(Duration latency) {
   longest_ = std::max(longest_, latency);
 }
 
-Duration LatencyHistogram::mean() const {
-  return total_ == 0 ? Duration{} : sum_ / static_cast<Duration::rep>(total_);
-}
+Duration LatencyHistogram::mean() const { return total_ == 0 ? Duration{} : sum_ / static_cast<Duration::rep>(total_); }
 
 std::string cable_verdict(const std::vector<NodeHealth>& health, const std::vector<std::string>& names) {
   FL_CHECK(health.size() == names.size());

@@ -32,7 +32,7 @@ std::size_t CanBus::add(std::unique_ptr<SimulatedNode> node) {
   FL_CHECK(node->address() < 128);
   const std::size_t slot = nodes_.size();
   slot_of_id_[node->address()] = static_cast<int>(slot);
-  markers_.emplace_back(node->address(), node->model());
+  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), node->model(), node->unique_id());
   nodes_.push_back(std::move(node));
   return slot;
 }
@@ -243,7 +243,10 @@ void CanBus::deliver_to(std::size_t slot) {
       want(slot, markers_[slot].boot_up());
       break;
     case CanopenMarker::Reaction::emergency:
-      want(slot, markers_[slot].length_emergency());
+      want(slot, markers_[slot].emergency());
+      break;
+    case CanopenMarker::Reaction::sdo:
+      want(slot, markers_[slot].sdo_answer());
       break;
   }
   nodes_[slot]->after_receiving();

@@ -72,7 +72,7 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
   [[nodiscard]] bool cut_off(const Transmission& transmission) const;
   static bool yields(const Wish& a, const Wish& b);
 
-  std::vector<CanopenMarker> markers_;
+  std::deque<CanopenMarker> markers_;
   std::array<int, 128> slot_of_id_ = [] {
     std::array<int, 128> none{};
     none.fill(-1);

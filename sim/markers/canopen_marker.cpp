@@ -10,6 +10,7 @@ namespace {
 constexpr std::uint16_t kNmt = 0x000;
 constexpr std::uint16_t kSync = 0x080;
 constexpr std::uint16_t kMpdo = 0x1FF;
+constexpr std::uint16_t kSdoRequest = 0x600;
 constexpr std::uint16_t kControllerHeartbeat = 0x77F;
 constexpr std::uint8_t kOperational = 5;
 constexpr std::uint16_t kPduTooShort = 0x8210;  // CiA 301, table 26: PDO not processed due to length error
@@ -23,7 +24,8 @@ std::uint8_t high(std::uint16_t word) { return static_cast<std::uint8_t>(word >>
 
 void CanopenMarker::power_on() {
   nmt_ = NmtState::pre_operational;
-  errors_ = 0;
+  counters_ = {};
+  sdo_.reset();
 }
 
 CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, Instant now) {
@@ -37,6 +39,12 @@ CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, I
   if (frame.id == kMpdo) {
     if (nmt_ != NmtState::stopped) take_mpdo(frame);
     return Reaction::none;
+  }
+  if (frame.id == kSdoRequest + id_) {
+    if (nmt_ == NmtState::stopped || frame.length != 8) return Reaction::none;
+    const auto answer = sdo_.answer(std::span(frame.data).first<8>(), now);
+    if (answer) sdo_answer_ = *answer;
+    return answer ? Reaction::sdo : Reaction::none;
   }
   if (nmt_ != NmtState::operational) return Reaction::none;
   if (frame.id == kSync) {
@@ -68,6 +76,7 @@ CanopenMarker::Reaction CanopenMarker::manage(const drivers::CanFrame& frame, In
       return Reaction::boot_up;
     case 0x82:
       nmt_ = NmtState::pre_operational;
+      sdo_.reset();
       return Reaction::boot_up;
     default:
       return Reaction::none;
@@ -78,9 +87,11 @@ CanopenMarker::Reaction CanopenMarker::take_pdo(int number, const drivers::CanFr
   const int first = number * kLooksPerPdo;
   const int wanted = std::min(kLooksPerPdo, model_.channels() - first);
   if (wanted <= 0) return Reaction::none;
+  const bool was_wrong = counters_.error_register != 0;
+  counters_.error_register = frame.length < wanted ? kGenericAndCommunicationError : 0;
   if (frame.length < wanted) return Reaction::emergency;
   model_.stage(first, std::span(frame.data).first(static_cast<std::size_t>(wanted)));
-  return Reaction::none;
+  return was_wrong ? Reaction::emergency : Reaction::none;
 }
 
 void CanopenMarker::take_mpdo(const drivers::CanFrame& frame) {
@@ -96,7 +107,7 @@ drivers::CanFrame CanopenMarker::status() const {
   return {static_cast<std::uint16_t>(0x180 + id_),
           8,
           {model_.shown_sequence(), static_cast<std::uint8_t>(model_.state()), low(crc), high(crc), low(model_.boots()),
-           high(model_.boots()), low(errors_), high(errors_)}};
+           high(model_.boots()), low(counters_.errors), high(counters_.errors)}};
 }
 
 drivers::CanFrame CanopenMarker::heartbeat() const {
@@ -105,10 +116,9 @@ drivers::CanFrame CanopenMarker::heartbeat() const {
 
 drivers::CanFrame CanopenMarker::boot_up() const { return {static_cast<std::uint16_t>(0x700 + id_), 1, {}}; }
 
-drivers::CanFrame CanopenMarker::length_emergency() const {
-  return {static_cast<std::uint16_t>(0x080 + id_),
-          8,
-          {low(kPduTooShort), high(kPduTooShort), kGenericAndCommunicationError}};
+drivers::CanFrame CanopenMarker::emergency() const {
+  const std::uint16_t code = counters_.error_register == 0 ? 0 : kPduTooShort;
+  return {static_cast<std::uint16_t>(0x080 + id_), 8, {low(code), high(code), counters_.error_register}};
 }
 
 }  // namespace footlight::sim

@@ -4,7 +4,9 @@
 #include <cstdint>
 
 #include "drivers/transport.hpp"
+#include "sim/markers/canopen_objects.hpp"
 #include "sim/markers/node_model.hpp"
+#include "sim/markers/sdo_server.hpp"
 
 namespace footlight::sim {
 
@@ -17,22 +19,28 @@ class CanopenMarker {
     none,
     status,     ///< status(), 0..5 ms after the SYNC
     boot_up,    ///< boot_up(), at once
-    emergency,  ///< length_emergency(), at once
+    emergency,  ///< emergency(), at once
+    sdo,        ///< sdo_answer(), at once
   };
 
-  /// @param id 1..126  @param model borrowed
-  CanopenMarker(std::uint8_t id, NodeModel& model) : id_(id), model_(model) {}
+  /// @param id 1..126  @param model borrowed  @param serial its own serial number
+  CanopenMarker(std::uint8_t id, NodeModel& model, std::uint32_t serial = 0)
+      : id_(id), model_(model), objects_(id, serial, model, counters_), sdo_(id, objects_) {}
+  CanopenMarker(const CanopenMarker&) = delete;  // its parts know each other
+  CanopenMarker& operator=(const CanopenMarker&) = delete;
 
   /// Pre-operational; the model is powered on by its owner.
   void power_on();
   Reaction receive(const drivers::CanFrame& frame, Instant now);
   /// An error frame was seen on the bus.
-  void count_error() { ++errors_; }
+  void count_error() { ++counters_.errors; }
 
   [[nodiscard]] drivers::CanFrame status() const;
   [[nodiscard]] drivers::CanFrame heartbeat() const;
   [[nodiscard]] drivers::CanFrame boot_up() const;
-  [[nodiscard]] drivers::CanFrame length_emergency() const;
+  [[nodiscard]] drivers::CanFrame emergency() const;
+  [[nodiscard]] const drivers::CanFrame& sdo_answer() const { return sdo_answer_; }
+  [[nodiscard]] const CanopenObjects& objects() const { return objects_; }
 
  private:
   enum class NmtState : std::uint8_t { stopped = 4, operational = 5, pre_operational = 127 };
@@ -44,7 +52,10 @@ class CanopenMarker {
   std::uint8_t id_;
   NodeModel& model_;
   NmtState nmt_ = NmtState::pre_operational;
-  std::uint16_t errors_ = 0;
+  CanopenObjects::Counters counters_;
+  CanopenObjects objects_;
+  SdoServer sdo_;
+  drivers::CanFrame sdo_answer_;
 };
 
 }  // namespace footlight::sim

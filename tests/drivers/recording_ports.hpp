@@ -107,6 +107,7 @@ class RecordingModbus final : public ModbusPort {
 class EventLog final : public EventSink {
  public:
   void on_event(const DeviceEvent& event) override { events.push_back(event); }
+  void on_answer(const ServiceAnswer& answer) override { answers.push_back(answer); }
   [[nodiscard]] std::size_t count(DeviceEvent::Kind kind) const {
     return static_cast<std::size_t>(
         std::count_if(events.begin(), events.end(), [&](const DeviceEvent& event) { return event.kind == kind; }));
@@ -118,6 +119,7 @@ class EventLog final : public EventSink {
   }
 
   std::vector<DeviceEvent> events;
+  std::vector<ServiceAnswer> answers;
 };
 
 }  // namespace footlight::drivers

@@ -109,7 +109,8 @@ TEST_F(Golden, CanFramesAreUnderstoodAndAnswered) {
   EXPECT_EQ(marker.status(), one("status"));
   EXPECT_EQ(marker.boot_up(), one("boot-up"));
   EXPECT_EQ(marker.heartbeat(), one("operational"));
-  EXPECT_EQ(marker.length_emergency(), one("emergency"));
+  marker.receive(can_frame("207#01"), kStart);  // too short
+  EXPECT_EQ(marker.emergency(), one("emergency"));
   marker.receive(one("heartbeat"), kStart + milliseconds(1100));
   EXPECT_EQ(seven.state(), NodeState::showing);
 }

@@ -72,7 +72,8 @@ Duration CanopenDriver::upload_time() const {
 }
 
 bool CanopenDriver::ready() const {
-  return down() || (outbox_.empty() && port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
+  return down() ||
+         (outbox_.empty() && !service_ && port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
 }
 
 SendStatus CanopenDriver::start(Instant now) {
@@ -171,17 +172,21 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
     ++heard;
     hear(frame, now, events);
   }
+  serve_on(now, events);
   pump();
   tell_preloads(events);
   tell_bus(events);
   Instant next = tell_missed(now, events);
   const bool starting = std::any_of(nodes_.begin(), nodes_.end(), [](const NodeState& node) { return node.start_due; });
-  if (!ready() || starting || !on_the_way_.empty()) next = std::min(next, now + status_time());
+  const bool leaving = !outbox_.empty() || port_.queued() + kMostFrames > kWindow || !on_the_way_.empty();
+  if (!down() && (leaving || starting)) next = std::min(next, now + status_time());
+  if (service_) next = std::min(next, service_->deadline);
   if (down() || port_.queued() > 0) next = std::min(next, now + kLookAtBus);
   return heard == kFramesPerStep ? now : next;
 }
 
 void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) {
+  hear_sdo(frame, now);
   const canopen::Heard heard = canopen::decode(frame);
   const auto visit = [&](const auto& message) {
     if constexpr (!std::is_same_v<std::decay_t<decltype(message)>, std::monostate>) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/devices/canopen/canopen_frames.hpp"
+#include "drivers/devices/canopen/sdo_client.hpp"
 #include "drivers/driver.hpp"
 
 namespace footlight::drivers {
@@ -45,9 +46,24 @@ class CanopenDriver final : public Driver {
   SendStatus heartbeat(Duration show_time, Instant now) override;
   SendStatus ask(const NodeAddress& node, Instant now) override;
   SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+
+  // By SDO; every step of it may take 50 ms, and until then nothing else is accepted.
+  [[nodiscard]] std::string_view refusal(Task task) const override;
+  SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
+  SendStatus identify(std::uint16_t address, bool on, Instant now) override;
+  SendStatus ask_health(std::uint16_t address, Instant now) override;
+
   Instant step(Instant now, EventSink& events) override;
 
  private:
+  /// Objects of one node that are read one after the other, or one that is written.
+  struct Service {
+    ServiceAnswer answer;
+    std::vector<canopen::ObjectPlace> places;
+    std::vector<std::uint8_t> written;  ///< empty: read
+    std::size_t next = 0;
+    Instant deadline;
+  };
   struct NodeState {
     NodeAddress address;
     Instant heard;                       ///< last frame, or when we began to listen
@@ -72,6 +88,11 @@ class CanopenDriver final : public Driver {
   void tell_preloads(EventSink& events);
   void tell_bus(EventSink& events);
   Instant tell_missed(Instant now, EventSink& events);
+  SendStatus serve(Task task, std::uint16_t address, std::vector<canopen::ObjectPlace> places,
+                   std::vector<std::uint8_t> written, Instant now);
+  void ask_next_object(Instant now);
+  void hear_sdo(const CanFrame& frame, Instant now);
+  void serve_on(Instant now, EventSink& events);
   [[nodiscard]] NodeState* find(std::uint8_t address);
 
   CanPort& port_;
@@ -81,6 +102,8 @@ class CanopenDriver final : public Driver {
   std::optional<Preload> leaving_;              ///< the preload whose frames stand in the outbox
   std::deque<Preload> on_the_way_;              ///< handed to the port, perhaps not yet on the wire
   std::uint64_t handed_over_ = 0;
+  canopen::SdoClient sdo_;
+  std::optional<Service> service_;
   Sequence last_sequence_ = 0;
   bool started_ = false;
   bool unlatched_ = false;  ///< a preload has been sent since the last SYNC

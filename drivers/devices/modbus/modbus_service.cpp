@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a technician asks of a Modbus device. The show's own operations: modbus_driver.cpp.
-#include "drivers/devices/modbus/modbus_driver.hpp"
-
 #include <utility>
 
 #include "core/check.hpp"
+#include "drivers/devices/modbus/modbus_driver.hpp"
 
 namespace footlight::drivers {
 namespace {
@@ -88,7 +87,10 @@ SendStatus ModbusDriver::identify(std::uint16_t address, bool on, Instant now) {
   const auto unit = static_cast<std::uint8_t>(address);
   if (profile_.identify_register) {
     return serve(Task::identify, address,
-                 {{unit, modbus::kWriteRegister, static_cast<std::uint16_t>(*profile_.identify_register), 1,
+                 {{unit,
+                   modbus::kWriteRegister,
+                   static_cast<std::uint16_t>(*profile_.identify_register),
+                   1,
                    {static_cast<std::uint16_t>(on ? 1 : 0)}}},
                  now);
   }
@@ -112,7 +114,10 @@ SendStatus ModbusDriver::set_address(std::uint16_t from, std::optional<std::uint
     const auto first = profile_.low_word_first ? low_word(*unique_id) : high_word(*unique_id);
     const auto second = profile_.low_word_first ? high_word(*unique_id) : low_word(*unique_id);
     return serve(Task::set_address, from,
-                 {{unit, modbus::kWriteRegisters, static_cast<std::uint16_t>(*profile_.readdress_register), 4,
+                 {{unit,
+                   modbus::kWriteRegisters,
+                   static_cast<std::uint16_t>(*profile_.readdress_register),
+                   4,
                    {first, second, to, static_cast<std::uint16_t>(to ^ 0x5A5AU)}}},
                  now);
   }
@@ -161,7 +166,8 @@ void ModbusDriver::take_service(const Job& job, const ModbusReply& reply) {
       if (entry.number != first) continue;
       const auto raw = reply.values[0];
       if (entry.name == "battery" && raw == 0xFFFF) continue;  // it has none
-      const double value = entry.has_sign ? static_cast<double>(static_cast<std::int16_t>(raw)) : static_cast<double>(raw);
+      const double value =
+          entry.has_sign ? static_cast<double>(static_cast<std::int16_t>(raw)) : static_cast<double>(raw);
       service_->health.push_back({entry.name, value * entry.scale, entry.unit});
     }
   }

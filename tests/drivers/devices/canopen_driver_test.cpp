@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/canopen/canopen_driver.hpp"
 
+#include <array>
+#include <map>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -261,6 +263,112 @@ TEST_F(CanopenDriverTest, WhileFramesWaitTheBusIsLookedAt) {
   EXPECT_EQ(step(), now_ + milliseconds(20));
   port_.in_queue = 0;
   EXPECT_EQ(step(), kNever);
+}
+
+class CanopenServiceTest : public CanopenDriverTest {
+ protected:
+  /// Answers each request by what the node's objects hold; an object that is not there is an abort.
+  void answer_all() {
+    while (!port_.sent.empty()) {
+      const CanFrame request = port_.sent.front();
+      port_.sent.erase(port_.sent.begin());
+      port_.in_queue = 0;
+      if ((request.id & 0x780U) != 0x600) continue;
+      CanFrame answer{static_cast<std::uint16_t>(0x580 + (request.id & 0x7F)), 8, request.data};
+      const auto found = objects_.find(request.data[1] | (request.data[2] << 8) | (request.data[3] << 16));
+      if (request.data[0] == 0x40 && found != objects_.end()) {
+        answer.data[0] = 0x43;
+        for (unsigned i = 0; i < 4; ++i) answer.data.at(4 + i) = static_cast<std::uint8_t>(found->second >> (8 * i));
+      } else if (request.data[0] == 0x2F && found != objects_.end()) {
+        found->second = request.data[4];
+        answer.data[0] = 0x60;
+      } else {
+        const std::array<std::uint8_t, 8> abort{0x80, request.data[1], request.data[2], request.data[3], 0, 0, 2, 6};
+        std::copy(abort.begin(), abort.end(), answer.data.begin());
+      }
+      port_.incoming.push_back(answer);
+      step();
+    }
+  }
+  std::map<int, std::uint32_t> objects_;
+};
+
+TEST_F(CanopenServiceTest, AProbeTellsWhoIsThere) {
+  objects_ = {{0x011018, 0}, {0x021018, 0x464C4D4B}, {0x031018, 0x10001}, {0x041018, 0xCAFE0102}, {0x002103, 16}};
+  ASSERT_EQ(driver_.probe(77, 0, now_), SendStatus::accepted) << "no node of the rig";
+  EXPECT_FALSE(driver_.ready());
+  EXPECT_EQ(driver_.probe(78, 0, now_), SendStatus::busy);
+  answer_all();
+  ASSERT_EQ(log_.answers.size(), 1U);
+  const ServiceAnswer& answer = log_.answers[0];
+  EXPECT_EQ(answer.kind, ServiceAnswer::Kind::found);
+  EXPECT_EQ(answer.address, 77);
+  EXPECT_EQ(answer.identity, (Identity{0xCAFE0102, "CANopen vendor 0x00000000 product 0x464C4D4B", 0x10001, 16}));
+  EXPECT_TRUE(driver_.ready());
+}
+
+TEST_F(CanopenServiceTest, ANodeThatRefusesEveryObjectIsThereAllTheSame) {
+  ASSERT_EQ(driver_.probe(77, 0, now_), SendStatus::accepted);
+  answer_all();
+  ASSERT_EQ(log_.answers.size(), 1U);
+  EXPECT_EQ(log_.answers[0].kind, ServiceAnswer::Kind::found);
+  EXPECT_EQ(log_.answers[0].identity, Identity{});
+}
+
+TEST_F(CanopenServiceTest, NobodyIsSilentAfter50Milliseconds) {
+  ASSERT_EQ(driver_.probe(77, 0, now_), SendStatus::accepted);
+  port_.in_queue = 0;
+  EXPECT_EQ(step(), now_ + milliseconds(50));
+  now_ += milliseconds(50);
+  port_.sent.clear();
+  step();
+  ASSERT_EQ(log_.answers.size(), 1U);
+  EXPECT_EQ(log_.answers[0].kind, ServiceAnswer::Kind::silent);
+  ASSERT_EQ(port_.sent.size(), 1U);
+  EXPECT_EQ(port_.sent[0].data[0], 0x80) << "and is told that we have given up";
+  port_.in_queue = 0;
+  step();
+  EXPECT_TRUE(driver_.ready());
+}
+
+TEST_F(CanopenServiceTest, IdentifyIsWrittenAndARefusalToldWithItsCode) {
+  objects_ = {{0x002104, 0}};
+  ASSERT_EQ(driver_.identify(1, true, now_), SendStatus::accepted);
+  answer_all();
+  EXPECT_EQ(objects_.at(0x002104), 1U);
+  ASSERT_EQ(log_.answers.size(), 1U);
+  EXPECT_EQ(log_.answers[0].kind, ServiceAnswer::Kind::done);
+  objects_.clear();
+  ASSERT_EQ(driver_.identify(1, false, now_), SendStatus::accepted);
+  answer_all();
+  ASSERT_EQ(log_.answers.size(), 2U);
+  EXPECT_EQ(log_.answers[1].kind, ServiceAnswer::Kind::refused);
+  EXPECT_EQ(log_.answers[1].detail, 0x06020000);
+}
+
+TEST_F(CanopenServiceTest, HealthIsErrorsAndBoots) {
+  objects_ = {{0x001001, 0x11}, {0x052102, 3}, {0x042102, 258}};
+  ASSERT_EQ(driver_.ask_health(2, now_), SendStatus::accepted);
+  answer_all();
+  ASSERT_EQ(log_.answers.size(), 1U);
+  ASSERT_EQ(log_.answers[0].health.size(), 3U);
+  EXPECT_EQ(log_.answers[0].health[0].name, "error register");
+  EXPECT_EQ(log_.answers[0].health[0].value, 0x11);
+  EXPECT_EQ(log_.answers[0].health[1].value, 3);
+  EXPECT_EQ(log_.answers[0].health[2].value, 258);
+}
+
+TEST_F(CanopenServiceTest, ABusThatGoesDownEndsIt) {
+  ASSERT_EQ(driver_.probe(77, 0, now_), SendStatus::accepted);
+  port_.bus = CanState::bus_off;
+  step();
+  ASSERT_EQ(log_.answers.size(), 1U);
+  EXPECT_EQ(log_.answers[0].kind, ServiceAnswer::Kind::silent);
+}
+
+TEST_F(CanopenServiceTest, AddressesAreNotSetByWire) {
+  EXPECT_EQ(driver_.refusal(Task::set_address), "the id of a CANopen node is set on the device");
+  EXPECT_EQ(driver_.refusal(Task::probe), "");
 }
 
 TEST_F(CanopenDriverTest, A32ChannelPreloadAt500KbitIs1080MicrosecondsAtWorst) {

@@ -81,7 +81,11 @@ TEST_F(CanopenMarkerTest, PdosOfOthersAndBeyondItsChannelsAreNotItsOwn) {
 TEST_F(CanopenMarkerTest, AShortPdoIsAnEmergencyAndALongOneCountsFromTheFront) {
   start();
   EXPECT_EQ(hear(0x205, {1, 2, 3, 4, 5, 6, 7}), Reaction::emergency);
-  EXPECT_EQ(marker.length_emergency(), frame(0x085, {0x10, 0x82, 0x11, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(marker.emergency(), frame(0x085, {0x10, 0x82, 0x11, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(hear(0x605, {0x40, 0x01, 0x10, 0, 0, 0, 0, 0}), Reaction::sdo);
+  EXPECT_EQ(marker.sdo_answer().data[4], 0x11) << "the error register";
+  EXPECT_EQ(hear(0x305, {9, 10, 11}), Reaction::emergency);
+  EXPECT_EQ(marker.emergency(), frame(0x085, {0, 0, 0, 0, 0, 0, 0, 0})) << "the error is over";
   EXPECT_EQ(hear(0x305, {9, 10, 11}), Reaction::none);
   hear(0x080, {1});
   EXPECT_EQ(model.shown(0), 255);
