@@ -92,12 +92,14 @@ class ShowPlanner {
     if (!sound) return interrupted();
     note_lag();
     note_waits(*chain);
+    note_marks_on_the_way(*chain);
     progress_.tell("validate", 0);
     planned_.plan.valid = *sound;
     if (!*sound) {
       const Verdict verdict = validate(planned_.plan);
       planned_.plan.valid = verdict.valid();
       planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
+      if (!verdict.valid()) name_who_cannot_pass(*chain);
     }
     if (!planned_.plan.valid && widest_two_m() > show_.stage.grid.pitch_m()) {
       planned_.refusal.insert(planned_.refusal.begin(), too_wide());
@@ -336,6 +338,21 @@ class ShowPlanner {
     }
   }
 
+  /// Who comes too near on the way to an exact formation, and how much more time would do.
+  void name_who_cannot_pass(const Chain& chain) {
+    std::vector<std::string> texts;
+    for (const Chain::Unpassed& one : chain.unpassed) {
+      const Stop& start = chain.stops[one.leg];
+      std::vector<std::uint32_t> who(slot_[one.leg].size());
+      for (std::uint32_t p = 0; p < who.size(); ++p) who[slot_[one.leg][p]] = p;
+      CannotPass fact{start.depart, chain.stops[one.leg + 1].section, one.given_s, one.needed_s, {}, {}};
+      for (const auto& [a, b] : chain.legs[one.leg].conflicts) fact.pairs.emplace_back(who[a], who[b]);
+      fact.last = who[one.last];
+      texts.push_back(cannot_pass_text(show_, fact));
+    }
+    planned_.refusal.insert(planned_.refusal.begin(), texts.begin(), texts.end());
+  }
+
   /// The transitions that end in a section and do not tolerate the stage's lag.
   void note_lag() {
     const double lag_s = to_seconds(show_.stage.lag);
@@ -392,6 +409,18 @@ class ShowPlanner {
       planned_.plan.sections[s].notes.push_back(fmt::format(
           "{} walk{} made one after the other, since people would come too near on them or when they are late: {}",
           waits[s], waits[s] == 1 ? " is" : "s are", example[s]));
+    }
+  }
+
+  void note_marks_on_the_way(const Chain& chain) {
+    for (const Chain::Passed& one : chain.passed) {
+      const Stop& goal = chain.stops[one.last_stop];
+      const std::size_t marks = one.last_stop - one.first_stop - 1;
+      planned_.plan.sections[goal.section.at()].notes.push_back(fmt::format(
+          "between count {:g} and count {:g} people pass each other with {} mark{} on the way: they walk {:.1f} m "
+          "instead of {:.1f} m",
+          show_.tempo.count_at(chain.stops[one.first_stop].depart), goal.count, marks, marks == 1 ? "" : "s",
+          one.walked_m, one.straight_m));
     }
   }
 

@@ -165,4 +165,30 @@ std::vector<std::string> refusal_texts(const Show& show, const Plan& plan, const
   return texts;
 }
 
+std::string cannot_pass_text(const Show& show, const CannotPass& fact) {
+  const auto id = [&](std::uint32_t performer) { return show.performers[performer].id; };
+  std::string who = "people";
+  if (!fact.pairs.empty()) {
+    who = fmt::format("performers {} and {}", id(fact.pairs.front().first), id(fact.pairs.front().second));
+    if (fact.pairs.size() > 1) {
+      who += fmt::format(", and {} more pair{},", fact.pairs.size() - 1, fact.pairs.size() == 2 ? "" : "s");
+    }
+  }
+  const double first = show.tempo.count_at(fact.start);
+  const double last = show.tempo.count_at(fact.start + seconds(fact.given_s));
+  std::string text = fmt::format("{} cannot pass each other on the way between count {} and count {}", who,
+                                 count_text(first), count_text(last));
+  if (!fact.needed_s) {
+    text += ": no way was found with marks on it, either";
+    return section_message(show, fact.section, text,
+                           "other places for them, places that they may exchange, or a smaller clearance");
+  }
+  const double more = std::ceil((*fact.needed_s - fact.given_s) * show.tempo.bpm_at(last) / 60 - 1e-9);
+  text += fmt::format(": with marks on it it takes {:.1f} s of {:.1f} s, performer {} being the last", *fact.needed_s,
+                      fact.given_s, id(fact.last));
+  return section_message(show, fact.section, text,
+                         fmt::format("start the section {:g} count{} later, or give them places that they may exchange",
+                                     more, more == 1 ? "" : "s"));
+}
+
 }  // namespace footlight::planner

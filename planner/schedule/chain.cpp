@@ -9,7 +9,7 @@
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/beats.hpp"
-#include "planner/schedule/shift.hpp"
+#include "planner/schedule/mend.hpp"
 #include "planner/schedule/step.hpp"
 
 namespace footlight::planner {
@@ -21,9 +21,6 @@ constexpr double kViaPitches = 4.5;
 /// Longest steps in which people wait before or after a walk to an exact formation: a count is halved until it is no
 /// longer than this. Every instant is a switch of all markers; in films the drawing gives way instead.
 constexpr double kWait_s = 0.6;
-/// Cell by cell around blocked cells: room in each step for the rounding of instants, and steps walked at once.
-constexpr double kStepMargin = 1.001;
-constexpr std::size_t kStride = 4;
 
 /// How far in a straight line somebody comes at least with a step over cells, in pitches: along a diagonal; between two
 /// of six directions; across the rows of triangles.
@@ -56,7 +53,7 @@ class ChainBuilder {
     if (!pace()) return std::nullopt;
     if (over_cells()) {
       stand_after_each_step();
-    } else if (!mend()) {
+    } else if (!mend({&task_, [&](std::size_t k) { return kind_toward(k); }}, chain_, progress_)) {
       return std::nullopt;
     }
     name_people();
@@ -374,85 +371,6 @@ class ChainBuilder {
     }
     if (!any) goals.clear();
     return goals;
-  }
-
-  static bool clear(const Leg& leg) { return leg.walkable && leg.conflicts.empty(); }
-
-  /// Where blocked cells made the walks to an exact formation fail, the people are shifted from cell to cell instead,
-  /// which needs more marks and is found whenever there is time for it.
-  bool mend() {
-    if (ways_.open()) return true;
-    Chain whole;
-    whole.stops.push_back(chain_.stops.front());
-    for (std::size_t k = 1; k < chain_.stops.size();) {
-      if (progress_.stopped()) return false;
-      std::size_t end = k;
-      bool good = true;
-      for (;; ++end) {
-        good = good && clear(chain_.legs[end - 1]);
-        if (chain_.stops[end].station) break;
-      }
-      const std::size_t before = whole.stops.size();
-      if (good || !chain_.stops[end].exact || !shift_to(chain_.stops[end], whole)) {
-        whole.stops.resize(before);
-        whole.legs.resize(before - 1);
-        whole.longest_m.resize(before - 1);
-        for (std::size_t j = k; j <= end; ++j) {
-          whole.stops.push_back(chain_.stops[j]);
-          whole.legs.push_back(chain_.legs[j - 1]);
-          whole.longest_m.push_back(chain_.longest_m[j - 1]);
-        }
-      }
-      k = end + 1;
-    }
-    chain_ = std::move(whole);
-    return true;
-  }
-
-  /// Appends the stops and legs to `goal`, several steps at a time where that can be walked straight.
-  bool shift_to(const Stop& goal, Chain& whole) const {
-    const Show& show = *task_.show;
-    const Stop start = whole.stops.back();
-    const double total_s = to_seconds(goal.arrive - start.depart);
-    const double speed = section_speed(show, show.sections[goal.section.at()]);
-    const int most = static_cast<int>(total_s * speed / (kStepMargin * grid_.pitch_m()));
-    const auto places = shift({&ways_, start.cells, goal.cells, most});
-    if (!places) return false;
-    const std::size_t steps = places->size() - 1;
-    for (std::size_t step = 0; step < steps;) {
-      bool found = false;
-      for (std::size_t stride = kStride; stride > 0 && !found; stride /= 2) {
-        const std::size_t next = std::min(steps, step + stride);
-        Stop stop = goal;
-        if (next < steps) {
-          stop = {};
-          stop.arrive = stop.depart = start.depart + seconds(total_s * double(next) / double(steps));
-          stop.count = show.tempo.count_at(stop.arrive);
-          stop.section = goal.section;
-        }
-        const double walked_s = to_seconds(stop.arrive - whole.stops.back().depart);
-        const double longest_m = std::max(0.0, speed * walked_s - kRounding_m);
-        Leg leg = settle({&ways_, (*places)[step], (*places)[next], longest_m, task_.clearance_m});
-        if (!clear(leg)) continue;
-        found = true;
-        stop.cells = next < steps ? (*places)[next] : goal.cells;
-        if (next == steps) reorder((*places)[next], goal.cells, leg.target_of);
-        whole.stops.push_back(std::move(stop));
-        whole.legs.push_back(std::move(leg));
-        whole.longest_m.push_back(longest_m);
-        step = next;
-      }
-      if (!found) return false;
-    }
-    return true;
-  }
-
-  /// Turns positions in `cells` into positions in `own`, the same cells in another order.
-  void reorder(const std::vector<CellIndex>& cells, const std::vector<CellIndex>& own,
-               std::vector<std::uint32_t>& target_of) const {
-    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(grid_.size()), 0);
-    for (std::uint32_t i = 0; i < own.size(); ++i) at_cell[own[i].at()] = i;
-    for (std::uint32_t& target : target_of) target = at_cell[cells[target].at()];
   }
 
   /// Tracks of equal classes at every binding are those of people of the same classes, the first of the first.

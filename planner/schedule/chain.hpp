@@ -49,6 +49,23 @@ struct Chain {
   std::vector<std::uint32_t> first_place;  ///< of each performer in the first stop's `cells`
   std::vector<std::uint32_t> alike;  ///< of each performer: people with equal numbers may have each other's tracks
 
+  /// A change to an exact formation for which marks were put on the way, so that people pass each other.
+  struct Passed {
+    std::size_t first_stop = 0;
+    std::size_t last_stop = 0;
+    double straight_m = 0;  ///< of all walks without these marks
+    double walked_m = 0;    ///< with them
+  };
+  std::vector<Passed> passed;
+  /// A change to an exact formation that could not be made.
+  struct Unpassed {
+    std::size_t leg = 0;             ///< the first on the way there
+    double given_s = 0;              ///< the time there is
+    std::optional<double> needed_s;  ///< that would do; nothing when no way was found
+    std::uint32_t last = 0;          ///< who would arrive last: place in the leg's first stop
+  };
+  std::vector<Unpassed> unpassed;
+
   /// When somebody walks from stop `leg` to the next; the others of the leg may walk at other times.
   struct WalkTimes {
     Instant start;

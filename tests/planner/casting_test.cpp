@@ -123,12 +123,12 @@ TEST(Casting, EveryFormationHasThePeopleThatItAsksForWhateverTheOthersAsk) {
 }
 
 TEST(Casting, TheChangeIsMadeWhereThereIsMostTime) {
-  // Names at both ends; four counts, then forty, then four.
+  // Names at both ends; four counts, then eighty-four, then four.
   Show show = test::show_with(12, GridKind::square, 30, 8);
   Rng rng(3);
   std::vector<CellIndex> left = test::cells_in(show.stage.grid, "A1:C4");
   std::vector<CellIndex> mirrored(left.rbegin(), left.rend());
-  const double starts[] = {1, 9, 57, 65};
+  const double starts[] = {1, 9, 97, 105};
   for (int s = 0; s < 4; ++s) {
     CellsSource source = list_of(test::cells_in(show.stage.grid, s < 2 ? "A1:C4" : "AA1:AC4"));
     if (s == 3) std::reverse(source.cells.begin(), source.cells.end());
@@ -139,6 +139,7 @@ TEST(Casting, TheChangeIsMadeWhereThereIsMostTime) {
   EXPECT_EQ(broken(show, plan), std::vector<std::string>());
   EXPECT_EQ(plan.formations[0].cells, plan.formations[1].cells);
   EXPECT_EQ(plan.formations[2].cells, plan.formations[3].cells);
+  EXPECT_TRUE(plan.valid) << "a dense block is turned around on the way";
 }
 
 TEST(Casting, BeforeTheFirstAndAfterTheLastNameAnybodyTakesAnyPlace) {

@@ -279,17 +279,43 @@ TEST(PlanShow, WideBodiesKeepOffSetPiecesAllTheWay) {
   }
 }
 
-TEST(PlanShow, RefusesNamedPeopleWhoWouldMeet) {
+Show show_of_a_swap(double count) {
   Show show = show_with(2, GridKind::square, 12, 4);
   const CellIndex left = show.stage.grid.index({1, 1});
   const CellIndex right = show.stage.grid.index({8, 1});
   show.sections.push_back(section_of("start", CellsSource{"start.csv", {left, right}}, 1, 0, 0, 31));
-  show.sections.push_back(section_of("swap", CellsSource{"swap.csv", {right, left}}, 33, 0, 0, 34));
+  show.sections.push_back(section_of("swap", CellsSource{"swap.csv", {right, left}}, count, 0, 0, 34));
+  return show;
+}
+
+TEST(PlanShow, NamedPeopleWhoWouldMeetPassEachOtherWithMarksOnTheWay) {
+  const Show show = show_of_a_swap(33);
   const auto planned = plan_show(show, {std::nullopt, std::nullopt});
   ASSERT_TRUE(planned);
+  expect_sound(*planned, show);
+  EXPECT_EQ(planned->plan.formations.back().cells, std::get<CellsSource>(show.sections[1].from).cells);
+  for (const TransitionFacts& facts : planned->plan.transitions) EXPECT_GE(facts.tolerated_lag_s, 0.2 - 1e-9);
+  EXPECT_THAT(planned->plan.sections[1].notes,
+              testing::ElementsAre(testing::MatchesRegex(
+                  "between count 1 and count 33 people pass each other with [1-4] marks on the way: they walk 1[4-7]"
+                  "\\.[0-9] m instead of 14.0 m")));
+}
+
+TEST(PlanShow, NamedPeopleWhoHaveNoTimeToPassEachOtherAreRefusedWithTheTimeThatWouldDo) {
+  const auto planned = plan_show(show_of_a_swap(11.5), {std::nullopt, std::nullopt});
+  ASSERT_TRUE(planned);
   EXPECT_FALSE(planned->plan.valid);
-  ASSERT_EQ(planned->refusal.size(), 1U);
-  EXPECT_THAT(planned->refusal.front(), testing::StartsWith("show.yaml:34:5: error: sections[1]: performers 1 "));
+  ASSERT_EQ(planned->refusal.size(), 2U);
+  EXPECT_THAT(
+      planned->refusal.front(),
+      testing::MatchesRegex("show.yaml:34:5: error: sections\\[1\\]: performers 1 and 2 cannot pass each other on "
+                            "the way between count 1 and count 11.5: with marks on it it takes [5-7]\\.[0-9] s "
+                            "of 5.2 s, performer [12] being the last \\(start the section [1-4] counts? later, or "
+                            "give them places that they may exchange\\)"));
+  EXPECT_THAT(planned->refusal.back(), testing::StartsWith("show.yaml:34:5: error: sections[1]: performers 1 "));
+  // And it would do.
+  const auto later = plan_show(show_of_a_swap(15.5), {std::nullopt, std::nullopt});
+  EXPECT_TRUE(later->plan.valid);
 }
 
 TEST(PlanShow, MorePeopleThanCellsIsAnInputError) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "planner/schedule/chain.hpp"
+
+namespace footlight::planner {
+
+struct MendTask {
+  const ChainTask* chain = nullptr;
+  /// The kind of each slot on the way to a stop, as StepTask::kind.
+  std::function<std::vector<std::uint32_t>(std::size_t stop)> kind_toward;
+};
+
+/// Where the walks to an exact formation conflict or cannot be walked, puts other walks in their place, with marks on
+/// the way. Around blocked cells, where everybody may take every target, people are shifted from cell to cell, which is
+/// found whenever there is time for it; else they pass each other (`pass`). What stays as it is stands in
+/// `chain.unpassed` where the walks are not simply too long.
+/// @return false when stopped
+[[nodiscard]] bool mend(const MendTask& task, Chain& chain, const Progress& progress);
+
+}  // namespace footlight::planner
