@@ -10,13 +10,8 @@
 #include <fmt/format.h>
 
 #include "app/marker_watch.hpp"
+#include "app/show_on_wires.hpp"
 #include "app/simulated_buses.hpp"
-#include "controller/bus_budget.hpp"
-#include "controller/bus_loop.hpp"
-#include "controller/cue_engine.hpp"
-#include "controller/cue_list.hpp"
-#include "controller/cue_schedule.hpp"
-#include "drivers/registry.hpp"
 #include "sim/simulated_rig.hpp"
 
 namespace footlight::app {
@@ -24,9 +19,7 @@ namespace {
 
 using controller::BusLoop;
 using controller::BusTarget;
-using controller::CueEngine;
 using controller::CuePlay;
-using controller::CueSchedule;
 
 constexpr Duration kPostRoll = milliseconds(2500);     // time for the last lamps to be right
 constexpr Duration kRefresh = milliseconds(2000);      // every marker is looked at this often
@@ -35,29 +28,14 @@ constexpr Duration kPaceStep = milliseconds(50);
 constexpr std::size_t kShownWrong = 10;
 constexpr int kMostAtOnce = 10'000;
 
-/// Time before the show for the roll call, at which nodes may be silent; the opening is lit meanwhile.
-Duration roll_call(const Rig& rig) {
-  std::vector<std::size_t> nodes(rig.buses.size(), 0);
-  for (const Node& node : rig.nodes) ++nodes[node.bus.at()];
-  const std::size_t most = nodes.empty() ? 0 : *std::ranges::max_element(nodes);
-  return milliseconds(5000) + static_cast<Duration::rep>(most) * milliseconds(250);
-}
-
-Duration run_length(const std::vector<CuePlay>& plays) {
-  Duration sum{};
-  for (const CuePlay& play : plays) sum += (play.to - play.from) + play.gap_after.value_or(controller::kShortestHold);
-  return sum;
-}
-
 /// One dry run under way.
 class DryRun {
  public:
-  DryRun(const Show& show, const Plan& plan, Rig rig, std::vector<CuePlay> plays, const DryRunOptions& options)
+  DryRun(const Show& show, const Plan& plan, Rig rig, const DryRunOptions& options)
       : show_(show),
         plan_(plan),
         rig_(std::move(rig)),
         options_(options),
-        plays_(std::move(plays)),
         simulated_(rig_, options.faults, options.seed, clock_, options.trace) {}
 
   Result<DryRunReport> run();
@@ -78,7 +56,7 @@ class DryRun {
   void keep_pace(Instant next) const;
   [[nodiscard]] bool exempt(NodeIndex node) const;
   [[nodiscard]] LookIndex should(std::size_t k, NodeIndex node, std::size_t channel) const {
-    return schedule_->looks_of(k, node)[channel];
+    return wires_->schedule->looks_of(k, node)[channel];
   }
   DryRunReport report();
 
@@ -86,20 +64,15 @@ class DryRun {
   const Plan& plan_;
   Rig rig_;
   const DryRunOptions& options_;
-  std::vector<CuePlay> plays_;
   Instant show_starts_;
   ManualClock clock_;
   sim::SimulatedRig simulated_;
-  std::vector<std::unique_ptr<drivers::Driver>> drivers_;
-  std::optional<CueSchedule> schedule_;
+  std::unique_ptr<ShowOnWires> wires_;
   std::optional<MarkerWatch> watch_;
-  std::optional<CueEngine> engine_;
-  std::vector<std::unique_ptr<BusLoop>> loops_;
   std::vector<Instant> wishes_;
   std::vector<sim::BusUse> use_before_;
-  Duration latch_ahead_{};
 
-  Instant go_at_ = kNever;
+  GoWhenWaiting go_;
   Instant sample_at_ = kNever;
   Instant compare_at_ = kNever;
   Instant ends_at_ = kNever;
@@ -112,37 +85,24 @@ class DryRun {
 Status<> DryRun::connect() {
   auto drivers = drivers_on(simulated_, rig_, plan_);
   if (!drivers) return std::move(drivers).error();
-  drivers_ = std::move(drivers).value();
-  for (const auto& driver : drivers_) latch_ahead_ = std::max(latch_ahead_, driver->latch_time());
-  auto schedule = controller::build_schedule(show_, plan_, rig_, drivers_);
-  if (!schedule) return schedule.error();
-  schedule_ = std::move(schedule).value();
-  show_starts_ = kStart + std::max(roll_call(rig_), controller::opening_time(*schedule_, rig_, drivers_));
-  simulated_.set_show(show_starts_, run_length(plays_));
-  for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
-    loops_.push_back(
-        std::make_unique<BusLoop>(*schedule_, drivers::node_addresses(rig_, BusIndex::of(b)), *drivers_[b]));
-  }
-  wishes_.assign(loops_.size(), kStart);
+  auto wires = put_on_wires(show_, plan_, rig_, std::move(drivers).value());
+  if (!wires) return std::move(wires).error();
+  wires_ = std::move(wires).value();
+  show_starts_ = kStart + wires_->opening;
+  simulated_.set_show(show_starts_, run_length(wires_->plays));
+  wishes_.assign(wires_->loops.size(), kStart);
   recovery_ = 2 * kRefresh;
-  for (const auto& loop : loops_) recovery_ = std::max(recovery_, 2 * loop->suspect_time());
-  watch_.emplace(rig_, *schedule_, simulated_, latch_ahead_ + kCompareAhead);
-  std::vector<Duration> notices(plays_.size());
-  const auto& switches = schedule_->switches();
-  for (std::size_t k = 1; k < switches.size(); ++k) {
-    if (!switches[k].cue || switches[k].cue == switches[k - 1].cue) continue;
-    for (const auto& loop : loops_) notices[*switches[k].cue] = std::max(notices[*switches[k].cue], loop->notice(k));
-  }
-  engine_.emplace(*schedule_, plays_, std::move(notices));
+  for (const auto& loop : wires_->loops) recovery_ = std::max(recovery_, 2 * loop->suspect_time());
+  watch_.emplace(rig_, *wires_->schedule, simulated_, wires_->latch_ahead + kCompareAhead);
   return Done{};
 }
 
 Result<DryRunReport> DryRun::run() {
   if (Status<> connected = connect(); !connected) return connected.error();
-  go_at_ = show_starts_;
+  go_ = GoWhenWaiting(show_starts_);
   play_to_the_end();
   if (told_to_stop()) return Error{ErrorKind::interrupted, "interrupted"};
-  compare(schedule_->switches().size() - 1);
+  compare(wires_->schedule->switches().size() - 1);
   DryRunReport report = this->report();
   recover();
   if (told_to_stop()) return Error{ErrorKind::interrupted, "interrupted"};
@@ -177,7 +137,7 @@ void DryRun::recover() {
   sample_at_ = kNever;
   ends_at_ = std::max(clock_.now(), simulated_.faults_end() + recovery_);
   play_to_the_end();
-  const std::size_t last = schedule_->switches().size() - 1;
+  const std::size_t last = wires_->schedule->switches().size() - 1;
   watch_->for_markers([&](NodeIndex node, std::size_t channel) {
     if (!watch_->shows(node, channel, should(last, node, channel))) ++report_.wrong_after_recovery;
   });
@@ -185,55 +145,45 @@ void DryRun::recover() {
 
 void DryRun::tick() {
   const Instant now = clock_.now();
-  engine_->step(now);
+  wires_->engine->step(now);
   press_go();
   if (now >= sample_at_) sample();
   compare_when_due();
-  const BusTarget target = engine_->target();
-  for (std::size_t b = 0; b < loops_.size(); ++b) wishes_[b] = loops_[b]->step(now, target);
+  const BusTarget target = wires_->engine->target();
+  for (std::size_t b = 0; b < wires_->loops.size(); ++b) wishes_[b] = wires_->loops[b]->step(now, target);
   say_moment(target);
 }
 
 void DryRun::press_go() {
   const Instant now = clock_.now();
-  if (engine_->finished()) {
-    if (ends_at_ == kNever) ends_at_ = now + kPostRoll;
-    return;
-  }
-  if (engine_->active()) {
-    go_at_ = kNever;
-    return;
-  }
-  if (go_at_ == kNever) go_at_ = now + controller::kShortestHold;
-  if (now < go_at_) return;
-  if (engine_->standby() == std::size_t{0}) {
-    sample_at_ = now + MarkerWatch::kSample / 2;
-    for (std::size_t b = 0; b < rig_.buses.size(); ++b) use_before_.push_back(simulated_.use(BusIndex::of(b)));
-  }
-  engine_->go(now);
-  go_at_ = kNever;
+  if (wires_->engine->finished() && ends_at_ == kNever) ends_at_ = now + kPostRoll;
+  const bool first = wires_->engine->standby() == std::size_t{0};
+  if (!go_.step(*wires_->engine, now) || !first) return;
+  sample_at_ = now + MarkerWatch::kSample / 2;
+  for (std::size_t b = 0; b < rig_.buses.size(); ++b) use_before_.push_back(simulated_.use(BusIndex::of(b)));
 }
 
 Instant DryRun::next_instant() const {
-  Instant next = std::min({simulated_.next_event(), engine_->next_event(), go_at_, sample_at_, compare_at_, ends_at_});
+  Instant next =
+      std::min({simulated_.next_event(), wires_->engine->next_event(), go_.next(), sample_at_, compare_at_, ends_at_});
   for (const Instant wish : wishes_) next = std::min(next, wish);
   return next;
 }
 
 void DryRun::sample() {
   sample_at_ += MarkerWatch::kSample;
-  watch_->sample(clock_.now(), engine_->target());
+  watch_->sample(clock_.now(), wires_->engine->target());
   if (options_.progress) {
-    const double all = std::max(1e-9, to_seconds(plays_.back().to - plays_.front().from));
-    options_.progress(to_seconds(engine_->position() - plays_.front().from) / all);
+    const double all = std::max(1e-9, to_seconds(wires_->plays.back().to - wires_->plays.front().from));
+    options_.progress(to_seconds(wires_->engine->position() - wires_->plays.front().from) / all);
   }
 }
 
 void DryRun::compare_when_due() {
-  const BusTarget target = engine_->target();
+  const BusTarget target = wires_->engine->target();
   compare_at_ = kNever;
   if (target.next_at == kNever || target.next == target.current || compared_ == target.current) return;
-  const Instant due = target.next_at - latch_ahead_ - kCompareAhead;
+  const Instant due = target.next_at - wires_->latch_ahead - kCompareAhead;
   if (clock_.now() < due) {
     compare_at_ = due;
     return;
@@ -243,7 +193,7 @@ void DryRun::compare_when_due() {
 
 void DryRun::compare(std::size_t k) {
   compared_ = k;
-  const auto& switches = schedule_->switches();
+  const auto& switches = wires_->schedule->switches();
   // The opening is nobody's cue: its lamps count like those of any switch.
   const bool ends_cue = k + 1 == switches.size() || (switches[k].cue && switches[k + 1].cue != switches[k].cue);
   CueReport cue;
@@ -266,7 +216,7 @@ void DryRun::compare(std::size_t k) {
     return;
   }
   if (switches[k].cue) {
-    const CuePlay& play = plays_[*switches[k].cue];
+    const CuePlay& play = wires_->plays[*switches[k].cue];
     cue.number = play.cue.number.to_text();
     cue.name = play.cue.name;
     cue.end_s = to_seconds(play.to);
@@ -276,7 +226,7 @@ void DryRun::compare(std::size_t k) {
 }
 
 bool DryRun::exempt(NodeIndex node) const {
-  const BusLoop& loop = *loops_[rig_.nodes[node.at()].bus.at()];
+  const BusLoop& loop = *wires_->loops[rig_.nodes[node.at()].bus.at()];
   return std::ranges::any_of(simulated_.reboots(), [&](const sim::Reboot& reboot) {
     return reboot.node == node && reboot.at <= clock_.now() &&
            clock_.now() <= reboot.at + loop.suspect_time() + drivers::kHeartbeatPeriod;
@@ -286,9 +236,9 @@ bool DryRun::exempt(NodeIndex node) const {
 void DryRun::say_moment(const BusTarget& target) {
   if (!options_.moment || told_ == target.current) return;
   told_ = target.current;
-  const controller::Switch& now = schedule_->switches()[target.current];
+  const controller::Switch& now = wires_->schedule->switches()[target.current];
   const double count = show_.tempo.count_at(now.time);
-  const std::string cue = now.cue ? plays_[*now.cue].cue.number.to_text() : "-";
+  const std::string cue = now.cue ? wires_->plays[*now.cue].cue.number.to_text() : "-";
   options_.moment(fmt::format("{:10.3f} s  cue {:<6} {:>8}  {}", to_seconds(now.time), cue,
                               show_.tempo.measure_beat(count), now.cause));
 }
@@ -302,22 +252,22 @@ void DryRun::keep_pace(Instant next) const {
 }
 
 DryRunReport DryRun::report() {
-  report_.switches = schedule_->switches().size();
-  report_.looks = schedule_->looks().size();
+  report_.switches = wires_->schedule->switches().size();
+  report_.looks = wires_->schedule->looks().size();
   report_.markers = watch_->markers();
   report_.right_share = watch_->right_share();
   report_.wrong = watch_->wrong();
   report_.wrong_s = watch_->wrong_s();
   report_.recovery_s = to_seconds(recovery_);
-  report_.duration_s = to_seconds(plays_.back().to - plays_.front().from);
+  report_.duration_s = to_seconds(wires_->plays.back().to - wires_->plays.front().from);
   report_.run_s = to_seconds(clock_.now() - show_starts_);
-  report_.confusion_before = schedule_->confusion().before;
-  report_.confusion_after = schedule_->confusion().after;
+  report_.confusion_before = wires_->schedule->confusion().before;
+  report_.confusion_after = wires_->schedule->confusion().after;
   report_.reboots = simulated_.reboots().size();
   for (const NodeIndex node : simulated_.dead()) report_.dead.push_back(rig_.nodes[node.at()].name);
   for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
     const sim::BusUse use = simulated_.use(BusIndex::of(b));
-    const controller::BusCounters& counters = loops_[b]->counters();
+    const controller::BusCounters& counters = wires_->loops[b]->counters();
     BusReport bus;
     bus.name = rig_.buses[b].name;
     bus.kind = std::string(to_text(rig_.buses[b].kind));
@@ -342,13 +292,12 @@ DryRunReport DryRun::report() {
 }  // namespace
 
 Result<DryRunReport> dry_run(const Show& show, const Plan& plan, Rig rig, const DryRunOptions& options) {
-  if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
   if (options.faults.dead > 0 && static_cast<std::size_t>(options.faults.dead) >= rig.nodes.size()) {
     return input_error(fmt::format("faults: \"dead={}\" leaves none of the rig's {} nodes (at most dead={})",
                                    options.faults.dead, rig.nodes.size(),
                                    std::max<std::size_t>(1, rig.nodes.size()) - 1));
   }
-  return DryRun(show, plan, with_simulated_buses(std::move(rig)), controller::cue_plays(show, plan), options).run();
+  return DryRun(show, plan, with_simulated_buses(std::move(rig)), options).run();
 }
 
 }  // namespace footlight::app

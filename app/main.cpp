@@ -16,6 +16,7 @@
 #include "app/measure_command.hpp"
 #include "app/new_command.hpp"
 #include "app/plan_command.hpp"
+#include "app/run_command.hpp"
 #include "app/session.hpp"
 #include "app/sim_command.hpp"
 #include "app/why_command.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 constexpr AddCommand kCommands[] = {
     add_new_command,    add_check_command,  add_plan_command, add_measure_command, add_why_command,
-    add_export_command, add_dryrun_command, add_dark_command, add_sim_command,
+    add_export_command, add_dryrun_command, add_dark_command, add_sim_command,     add_run_command,
 };
 
 constexpr const char* kFooter =

@@ -321,6 +321,10 @@ bool BusLoop::settled() const noexcept {
   return std::ranges::all_of(nodes_, [](const NodeState& node) { return node.right || node.quarantined; });
 }
 
+std::size_t BusLoop::unconfirmed() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(nodes_, [](const NodeState& node) { return !node.right; }));
+}
+
 std::vector<NodeIndex> BusLoop::quarantined() const {
   std::vector<NodeIndex> list;
   for (const NodeState& node : nodes_) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controller/cue_schedule.hpp"
+#include "controller/lateness.hpp"
 #include "core/time.hpp"
 #include "drivers/driver.hpp"
 
@@ -64,6 +65,10 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::size_t lit() const noexcept { return current_; }
   /// Nodes that have not answered for so long that they are only asked from time to time.
   [[nodiscard]] std::vector<NodeIndex> quarantined() const;
+  /// Nodes that are not confirmed to show what they should now, those in quarantine among them. O(nodes)
+  [[nodiscard]] std::size_t unconfirmed() const noexcept;
+  /// How late the last bit of each latch left, as far as the loop can know.
+  [[nodiscard]] const Lateness& lateness() const noexcept { return lateness_; }
   /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not
   /// late.
   [[nodiscard]] Duration notice(std::size_t k) const;
@@ -153,6 +158,7 @@ class BusLoop final : private drivers::EventSink {
   std::vector<NodeState> nodes_;
   std::vector<std::int32_t> by_node_;  ///< position in nodes_ of a NodeIndex, -1: of another bus
   BusCounters counters_;
+  Lateness lateness_;
 
   Instant now_;
   Duration show_time_{};

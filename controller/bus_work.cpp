@@ -65,6 +65,7 @@ bool BusLoop::latch_next() noexcept {
   if (!took(driver_.latch(sequence_of(next_), now_), Operation::latch, latch_time_)) return false;
   const Duration late = std::max(Duration{}, end - next_at_);
   ++counters_.latches;
+  lateness_.add(late);
   counters_.late_latches += late > kLateness ? 1 : 0;
   counters_.worst_lateness = std::max(counters_.worst_lateness, late);
   switch_over(true);

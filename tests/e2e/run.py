@@ -17,6 +17,8 @@ import sys
 import tempfile
 import unittest
 
+import live
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHARED = os.environ.get("FOOTLIGHT_SHARED", os.path.join(ROOT, "..", "shared"))
 FULL = bool(os.environ.get("FOOTLIGHT_FULL"))
@@ -75,6 +77,10 @@ class Case(unittest.TestCase):
             for figure in ("theta_dev", "theta_miss", "theta_iou"):
                 self.assertAlmostEqual(judged[figure], ours[figure], delta=0.0005, msg=f"{section['name']} {figure}")
         return measured
+
+
+# The show in real time (tests/e2e/live.py).
+Live = live.make_cases(Case, footlight, lambda: PROGRAM)
 
 
 class Docs(Case):

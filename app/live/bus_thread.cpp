@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/live/bus_thread.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace footlight::app {
+namespace {
+
+constexpr Duration kLook = milliseconds(200);         // at a port that has no handle, or has been unplugged
+constexpr Duration kTroubled = milliseconds(20);      // a wire that says again and again that it is gone
+constexpr Duration kHandedOverLate = microseconds(1);  // what is due a moment from now is as good as due
+
+}  // namespace
+
+BusThread::BusThread(controller::BusLoop& loop, std::function<int()> poll_handle, const SharedTarget& target,
+                     const Clock& clock, std::size_t switches)
+    : loop_(loop),
+      poll_handle_(std::move(poll_handle)),
+      target_(target),
+      clock_(clock),
+      waiting_(clock),
+      times_(switches) {}
+
+BusThread::~BusThread() { stop(); }
+
+void BusThread::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void BusThread::stop() {
+  if (!thread_.joinable()) return;
+  stopping_.store(true, std::memory_order_relaxed);
+  waiting_.wake();
+  thread_.join();
+}
+
+void BusThread::run() noexcept {
+  real_time_ = ask_for_real_time();
+  bool troubled = false;
+  while (!stopping_.load(std::memory_order_relaxed)) {
+    const Instant now = clock_.now();
+    const Instant wish = step(now);
+    if (wish <= now + kHandedOverLate) continue;
+    const Instant until = std::min(wish, now + (troubled ? kTroubled : kLook));
+    const Waiting::Why why = waiting_.until(until, troubled ? -1 : poll_handle_());
+    if (why == Waiting::Why::time && until == wish) wake_lateness_.add(clock_.now() - until);
+    troubled = why == Waiting::Why::trouble;
+  }
+  cpu_ = thread_cpu();
+}
+
+Instant BusThread::step(Instant now) noexcept {
+  const SharedTarget::Told told = target_.read();
+  const bool deaf = now - told.at > kDeaf;
+  deaf_ += deaf && !is_deaf_ ? 1 : 0;
+  is_deaf_ = deaf;
+  if (deaf) return now + kLook;
+  const Instant wish = loop_.step(now, told.target);
+  note(now);
+  return wish;
+}
+
+void BusThread::note(Instant now) noexcept {
+  const std::size_t lit = loop_.lit();
+  if (lit != lit_ && lit < times_.size()) {
+    times_[lit_].unconfirmed = static_cast<std::uint32_t>(unconfirmed_.load(std::memory_order_relaxed));
+    // Where no lamp of the bus changes there is no latch.
+    if (loop_.counters().latches != latches_) times_[lit].latched = now;
+    latches_ = loop_.counters().latches;
+    lit_ = lit;
+  }
+  const std::size_t unconfirmed = loop_.unconfirmed();
+  if (unconfirmed == 0 && times_[lit_].confirmed == kNever) times_[lit_].confirmed = now;
+  unconfirmed_.store(unconfirmed, std::memory_order_relaxed);
+  settled_.store(loop_.settled(), std::memory_order_relaxed);
+}
+
+}  // namespace footlight::app

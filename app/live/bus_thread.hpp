@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "app/live/shared_target.hpp"
+#include "app/live/waiting.hpp"
+#include "controller/bus_loop.hpp"
+#include "controller/lateness.hpp"
+#include "core/clock.hpp"
+
+namespace footlight::app {
+
+/// When a bus has lit a switch, and when all its nodes had said so; kNever: not.
+struct SwitchTimes {
+  Instant latched = kNever;  ///< handed to the port; on the wire its own time later. Never where no lamp changes
+  Instant confirmed = kNever;
+  std::uint32_t unconfirmed = 0;  ///< nodes, when the next switch was lit
+};
+
+/// The thread that owns one bus: its driver, its port, its loop. It sleeps until the wire has something, the loop wants
+/// to be called or the cue thread has news.
+///
+/// The controller's heartbeats are the cue thread's: when that has not said anything for kDeaf, the bus stands still,
+/// so that the markers' lease runs out and they hold, then lose guidance, as they would without a controller.
+class BusThread {
+ public:
+  static constexpr Duration kDeaf = milliseconds(500);
+
+  /// Borrows everything. @param poll_handle of the bus's port, asked after each step
+  /// @param switches of the schedule
+  BusThread(controller::BusLoop& loop, std::function<int()> poll_handle, const SharedTarget& target, const Clock& clock,
+            std::size_t switches);
+  ~BusThread();
+  BusThread(const BusThread&) = delete;
+  BusThread& operator=(const BusThread&) = delete;
+
+  void start();
+  void stop();
+  void wake() const noexcept { waiting_.wake(); }
+
+  // Any thread.
+  [[nodiscard]] bool settled() const noexcept { return settled_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::size_t unconfirmed() const noexcept { return unconfirmed_.load(std::memory_order_relaxed); }
+
+  // After `stop`.
+  [[nodiscard]] const controller::Lateness& wake_lateness() const { return wake_lateness_; }
+  [[nodiscard]] const std::vector<SwitchTimes>& times() const { return times_; }
+  [[nodiscard]] Duration cpu() const { return cpu_; }
+  [[nodiscard]] std::uint64_t deaf() const { return deaf_; }
+  [[nodiscard]] bool real_time() const { return real_time_; }
+  [[nodiscard]] const controller::BusLoop& loop() const { return loop_; }
+
+ private:
+  void run() noexcept;
+  /// @return when it wants to be called again
+  Instant step(Instant now) noexcept;
+  void note(Instant now) noexcept;
+
+  controller::BusLoop& loop_;
+  std::function<int()> poll_handle_;
+  const SharedTarget& target_;
+  const Clock& clock_;
+  Waiting waiting_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> settled_{false};
+  std::atomic<std::size_t> unconfirmed_{0};
+  controller::Lateness wake_lateness_;
+  std::vector<SwitchTimes> times_;
+  std::size_t lit_ = 0;
+  std::uint64_t latches_ = 0;
+  Duration cpu_{};
+  std::uint64_t deaf_ = 0;  ///< times that the cue thread was not heard of
+  bool is_deaf_ = false;
+  bool real_time_ = false;
+  std::thread thread_;
+};
+
+}  // namespace footlight::app

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/live/live_run.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "app/live/bus_thread.hpp"
+#include "app/live/shared_target.hpp"
+#include "app/live/waiting.hpp"
+#include "app/show_on_wires.hpp"
+#include "controller/lateness.hpp"
+#include "core/clock.hpp"
+
+namespace footlight::app {
+namespace {
+
+using controller::BusTarget;
+using controller::Lateness;
+
+constexpr Duration kPublish = milliseconds(50);  // the cue thread says at least so often that it lives
+constexpr Duration kLookOn = milliseconds(20);
+constexpr Duration kPostRoll = milliseconds(2500);  // time for the last lamps to be right
+constexpr Duration kBareTimer = milliseconds(10);
+
+LatenessReport report_of(const Lateness& lateness) {
+  const auto ms = [](Duration duration) { return to_seconds(duration) * 1e3; };
+  return {lateness.count(), ms(lateness.quantile(0.5)), ms(lateness.quantile(0.99)), ms(lateness.quantile(0.999)),
+          ms(lateness.worst())};
+}
+
+/// A thread that sleeps until an instant and does nothing else: what this machine can do, to measure the others by.
+class BareTimer {
+ public:
+  explicit BareTimer(const Clock& clock) : clock_(clock), waiting_(clock) {
+    thread_ = std::thread([this] { run(); });
+  }
+  ~BareTimer() { stop(); }
+  BareTimer(const BareTimer&) = delete;
+  BareTimer& operator=(const BareTimer&) = delete;
+  void stop() {
+    if (!thread_.joinable()) return;
+    stopping_.store(true, std::memory_order_relaxed);
+    thread_.join();
+  }
+  [[nodiscard]] const Lateness& lateness() const { return lateness_; }
+
+ private:
+  void run() noexcept {
+    (void)ask_for_real_time();
+    Instant due = clock_.now() + kBareTimer;
+    while (!stopping_.load(std::memory_order_relaxed)) {
+      waiting_.until(due);
+      lateness_.add(clock_.now() - due);
+      due = clock_.now() + kBareTimer;
+    }
+  }
+
+  const Clock& clock_;
+  Waiting waiting_;
+  std::atomic<bool> stopping_{false};
+  Lateness lateness_;
+  std::thread thread_;
+};
+
+/// The cue thread: steps the engine at its instants and tells the buses.
+class CueThread {
+ public:
+  CueThread(ShowOnWires& show, SharedTarget& target, const Clock& clock)
+      : show_(show), target_(target), clock_(clock), waiting_(clock), go_at_(show.plays.size(), kNever) {}
+  ~CueThread() { stop(); }
+  CueThread(const CueThread&) = delete;
+  CueThread& operator=(const CueThread&) = delete;
+
+  /// @param news called when the target has changed; must not block
+  void start(std::function<void()> news) {
+    news_ = std::move(news);
+    publish(clock_.now());
+    thread_ = std::thread([this] { run(); });
+  }
+  void stop() {
+    if (!thread_.joinable()) return;
+    stopping_.store(true, std::memory_order_relaxed);
+    waiting_.wake();
+    thread_.join();
+  }
+  void press_go() noexcept {
+    presses_.fetch_add(1, std::memory_order_relaxed);
+    waiting_.wake();
+  }
+  void press_go_whenever_it_waits() noexcept {
+    by_itself_.store(true, std::memory_order_relaxed);
+    waiting_.wake();
+  }
+  [[nodiscard]] bool finished() const noexcept { return finished_.load(std::memory_order_relaxed); }
+  // After `stop`.
+  [[nodiscard]] const std::vector<Instant>& go_at() const { return go_at_; }
+  [[nodiscard]] bool real_time() const { return real_time_; }
+
+ private:
+  void run() noexcept {
+    real_time_ = ask_for_real_time();
+    while (!stopping_.load(std::memory_order_relaxed)) {
+      const Instant now = clock_.now();
+      show_.engine->step(now);
+      press(now);
+      publish(now);
+      finished_.store(show_.engine->finished(), std::memory_order_relaxed);
+      Instant next = std::min(now + kPublish, show_.engine->next_event());
+      if (by_itself_.load(std::memory_order_relaxed)) next = std::min(next, go_.next());
+      waiting_.until(next);
+    }
+  }
+
+  void press(Instant now) noexcept {
+    const auto standby = show_.engine->standby();
+    bool pressed = false;
+    if (presses_.exchange(0, std::memory_order_relaxed) > 0) {  // several at once are one
+      pressed = show_.engine->go(now) == controller::GoAnswer::started;
+    } else if (by_itself_.load(std::memory_order_relaxed)) {
+      if (!told_) go_ = GoWhenWaiting(now);
+      told_ = true;
+      pressed = go_.step(*show_.engine, now);
+    }
+    if (pressed && standby) go_at_[*standby] = now;
+  }
+
+  void publish(Instant now) noexcept {
+    const BusTarget target = show_.engine->target();
+    target_.publish(target, now);
+    const bool news = target.current != last_.current || target.next_at != last_.next_at;
+    last_ = target;
+    if (news) news_();
+  }
+
+  ShowOnWires& show_;
+  SharedTarget& target_;
+  const Clock& clock_;
+  Waiting waiting_;
+  std::function<void()> news_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> finished_{false};
+  std::atomic<bool> by_itself_{false};
+  std::atomic<int> presses_{0};
+  GoWhenWaiting go_;
+  bool told_ = false;
+  bool real_time_ = false;
+  BusTarget last_;
+  std::vector<Instant> go_at_;  ///< by cue
+  std::thread thread_;
+};
+
+/// One run: the threads, and what the calling thread sees of them.
+class LiveRun {
+ public:
+  LiveRun(const Show& show, const Rig& rig, ShowOnWires& wires, const std::vector<drivers::Port>& ports,
+          const LiveOptions& options)
+      : show_(show), rig_(rig), wires_(wires), options_(options), cue_(wires, target_, clock_) {
+    for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+      auto handle = [port = drivers::reference(ports[b])] {
+        return std::visit([](const auto* open) { return open->poll_handle(); }, port);
+      };
+      threads_.push_back(std::make_unique<BusThread>(*wires.loops[b], std::move(handle), target_, clock_,
+                                                     wires.schedule->switches().size()));
+    }
+  }
+
+  Result<LiveReport> play();
+
+ private:
+  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  [[nodiscard]] std::size_t unconfirmed() const {
+    std::size_t sum = 0;
+    for (const auto& bus : threads_) sum += bus->unconfirmed();
+    return sum;
+  }
+  [[nodiscard]] bool settled() const {
+    return std::ranges::all_of(threads_, [](const auto& bus) { return bus->settled(); });
+  }
+  void look_on();
+  void call_the_roll();
+  void say_moment(const BusTarget& target);
+  LiveReport report(const BareTimer& bare, Duration run);
+  LiveBusReport report_bus(std::size_t b, Duration run) const;
+  void report_switches(LiveReport& report) const;
+  void report_cues(LiveReport& report) const;
+  void report_floor(LiveReport& report) const;
+
+  const Show& show_;
+  const Rig& rig_;
+  ShowOnWires& wires_;
+  const LiveOptions& options_;
+  SteadyClock clock_;
+  SharedTarget target_;
+  CueThread cue_;
+  std::vector<std::unique_ptr<BusThread>> threads_;
+  Lateness wake_;
+  bool roll_called_ = false;
+  std::size_t told_ = 0;
+};
+
+Result<LiveReport> LiveRun::play() {
+  const Instant began = clock_.now();
+  BareTimer bare(clock_);
+  cue_.start([this] {
+    for (const auto& bus : threads_) bus->wake();
+  });
+  for (const auto& bus : threads_) bus->start();
+  Instant ends_at = kNever;
+  while (!stopped() && clock_.now() < ends_at) {
+    std::this_thread::sleep_for(kLookOn);
+    look_on();
+    if (!cue_.finished()) continue;
+    if (ends_at == kNever) ends_at = clock_.now() + kPostRoll;
+    if (unconfirmed() == 0 && settled()) break;
+  }
+  const Duration run = clock_.now() - began;
+  cue_.stop();
+  for (const auto& bus : threads_) bus->stop();
+  bare.stop();
+  if (stopped()) return Error{ErrorKind::interrupted, "interrupted: the lamps keep what they show until their lease ends"};
+  return report(bare, run);
+}
+
+void LiveRun::look_on() {
+  if (!roll_called_) call_the_roll();
+  if (options_.presses && options_.presses() > 0) cue_.press_go();
+  const BusTarget target = target_.read().target;
+  say_moment(target);
+  if (!options_.progress) return;
+  const Duration from = wires_.plays.front().from.time_since_epoch();
+  const Duration to = wires_.plays.back().to.time_since_epoch();
+  options_.progress(to_seconds(target.show_time - from) / std::max(1e-9, to_seconds(to - from)), unconfirmed());
+}
+
+void LiveRun::call_the_roll() {
+  if (!settled() && clock_.now() < kStart + wires_.opening) return;
+  roll_called_ = true;
+  if (options_.ready) options_.ready(unconfirmed());
+  if (options_.go) cue_.press_go_whenever_it_waits();
+}
+
+void LiveRun::say_moment(const BusTarget& target) {
+  while (options_.moment && told_ < target.current) {
+    const controller::Switch& now = wires_.schedule->switches()[++told_];
+    const std::string cue = now.cue ? wires_.plays[*now.cue].cue.number.to_text() : "-";
+    options_.moment(fmt::format("{:10.3f} s  cue {:<6} {:>8}  {}", to_seconds(now.time), cue,
+                                show_.tempo.measure_beat(show_.tempo.count_at(now.time)), now.cause));
+  }
+}
+
+LiveReport LiveRun::report(const BareTimer& bare, Duration run) {
+  LiveReport out;
+  out.switches = wires_.schedule->switches().size();
+  for (const Node& node : rig_.nodes) {
+    out.markers += static_cast<std::uint64_t>(std::ranges::count_if(
+        node.channels, [](const Channel& channel) { return channel.kind != Channel::Kind::unused; }));
+  }
+  out.duration_s = to_seconds(wires_.plays.back().to - wires_.plays.front().from);
+  out.run_s = to_seconds(run);
+  out.real_time = cue_.real_time();
+  for (std::size_t b = 0; b < threads_.size(); ++b) {
+    LiveBusReport bus = report_bus(b, run);
+    out.deliveries += bus.deliveries + bus.unverified;
+    out.retries += bus.retries;
+    out.late_latches += bus.late_latches;
+    out.unconfirmed += bus.unconfirmed;
+    out.deaf += threads_[b]->deaf();
+    out.real_time = out.real_time && threads_[b]->real_time();
+    wake_.add(threads_[b]->wake_lateness());
+    out.buses.push_back(std::move(bus));
+  }
+  out.wake = report_of(wake_);
+  out.bare = report_of(bare.lateness());
+  report_switches(out);
+  report_cues(out);
+  report_floor(out);
+  return out;
+}
+
+LiveBusReport LiveRun::report_bus(std::size_t b, Duration run) const {
+  const BusThread& thread = *threads_[b];
+  const controller::BusCounters& counters = thread.loop().counters();
+  LiveBusReport bus;
+  bus.name = rig_.buses[b].name;
+  bus.kind = std::string(to_text(rig_.buses[b].kind));
+  bus.url = rig_.buses[b].url;
+  bus.nodes = static_cast<std::uint64_t>(std::ranges::count(rig_.nodes, BusIndex::of(b), &Node::bus));
+  bus.deliveries = counters.deliveries;
+  bus.unverified = counters.unverified;
+  bus.retries = counters.retries;
+  bus.misses = counters.misses;
+  bus.quarantines = counters.quarantines;
+  bus.boots = counters.boots;
+  bus.latches = counters.latches;
+  bus.late_latches = counters.late_latches;
+  bus.latch = report_of(thread.loop().lateness());
+  bus.wake = report_of(thread.wake_lateness());
+  bus.cpu_share = to_seconds(thread.cpu()) / std::max(1e-9, to_seconds(run));
+  bus.unconfirmed = thread.unconfirmed();
+  for (const NodeIndex node : thread.loop().quarantined()) bus.silent.push_back(rig_.nodes[node.at()].name);
+  return bus;
+}
+
+void LiveRun::report_switches(LiveReport& report) const {
+  for (std::size_t k = 0; k < report.switches; ++k) {
+    Instant first = kNever;
+    Instant last = kStart;
+    for (std::size_t b = 0; b < threads_.size(); ++b) {
+      const SwitchTimes& times = threads_[b]->times()[k];
+      if (k + 1 < report.switches) report.late += times.unconfirmed;
+      if (times.latched == kNever) continue;
+      const Instant lit = times.latched + wires_.drivers[b]->latch_time();
+      first = std::min(first, lit);
+      last = std::max(last, lit);
+    }
+    if (first != kNever) report.worst_skew_ms = std::max(report.worst_skew_ms, to_seconds(last - first) * 1e3);
+  }
+}
+
+void LiveRun::report_cues(LiveReport& report) const {
+  const auto& switches = wires_.schedule->switches();
+  for (std::size_t c = 0; c < wires_.plays.size(); ++c) {
+    LiveCueReport cue;
+    cue.number = wires_.plays[c].cue.number.to_text();
+    cue.name = wires_.plays[c].cue.name;
+    const auto of_cue = [c](const controller::Switch& one) { return one.cue == c; };
+    const auto first = std::ranges::find_if(switches, of_cue);
+    if (first != switches.end()) {
+      const auto k = static_cast<std::size_t>(first - switches.begin());
+      const auto end = k + static_cast<std::size_t>(std::ranges::count_if(switches, of_cue)) - 1;
+      for (std::size_t b = 0; b < threads_.size(); ++b) {
+        const Instant latched = threads_[b]->times()[k].latched;
+        if (cue_.go_at()[c] != kNever && latched != kNever) {
+          const Duration lit = latched + wires_.drivers[b]->latch_time() - cue_.go_at()[c];
+          cue.go_to_last_lamp_ms = std::max(cue.go_to_last_lamp_ms, to_seconds(lit) * 1e3);
+        }
+        cue.unconfirmed += end + 1 == switches.size() ? threads_[b]->unconfirmed() : threads_[b]->times()[end].unconfirmed;
+      }
+    }
+    report.cues.push_back(std::move(cue));
+  }
+}
+
+void LiveRun::report_floor(LiveReport& report) const {
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
+    const auto looks = wires_.schedule->looks_of(report.switches - 1, NodeIndex::of(n));
+    report.floor.emplace_back(looks.begin(), looks.begin() + static_cast<std::ptrdiff_t>(rig_.nodes[n].channels.size()));
+  }
+}
+
+}  // namespace
+
+Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, const std::vector<drivers::Port>& ports,
+                            const LiveOptions& options) {
+  std::vector<std::unique_ptr<drivers::Driver>> drivers;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    auto driver = drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, BusIndex::of(b)),
+                                       controller::plan_byte_of(plan), drivers::reference(ports[b]));
+    if (!driver) return std::move(driver).error();
+    drivers.push_back(std::move(driver).value());
+  }
+  auto wires = put_on_wires(show, plan, rig, std::move(drivers));
+  if (!wires) return std::move(wires).error();
+  return LiveRun(show, rig, **wires, ports, options).play();
+}
+
+}  // namespace footlight::app

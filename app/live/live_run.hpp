@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/plan.hpp"
+#include "core/result.hpp"
+#include "core/rig.hpp"
+#include "core/show.hpp"
+#include "drivers/registry.hpp"
+
+namespace footlight::app {
+
+/// Lateness of one kind of thing, in milliseconds.
+struct LatenessReport {
+  std::uint64_t count = 0;
+  double p50_ms = 0;
+  double p99_ms = 0;
+  double p999_ms = 0;
+  double worst_ms = 0;
+};
+
+struct LiveBusReport {
+  std::string name;
+  std::string kind;
+  std::string url;
+  std::uint64_t nodes = 0;
+  std::uint64_t deliveries = 0;
+  std::uint64_t unverified = 0;
+  std::uint64_t retries = 0;
+  std::uint64_t misses = 0;
+  std::uint64_t quarantines = 0;
+  std::uint64_t boots = 0;
+  std::uint64_t latches = 0;
+  std::uint64_t late_latches = 0;
+  LatenessReport latch;  ///< of the last bit of the latches, as far as the bus can know
+  LatenessReport wake;   ///< of the thread: when it woke, behind when it wanted to
+  double cpu_share = 0;  ///< processor time of the thread over the time of the run
+  std::uint64_t unconfirmed = 0;     ///< nodes not confirmed right at the end
+  std::vector<std::string> silent;   ///< of them, nodes in quarantine
+};
+
+struct LiveCueReport {
+  std::string number;
+  std::string name;
+  double go_to_last_lamp_ms = 0;  ///< GO until the last bus had handed over its first latch and its time on the wire
+  std::uint64_t unconfirmed = 0;  ///< nodes not confirmed right at its end
+};
+
+struct LiveReport {
+  std::uint64_t markers = 0;
+  std::uint64_t switches = 0;
+  double duration_s = 0;  ///< of show
+  double run_s = 0;       ///< of real time, from the first byte to the last
+  std::uint64_t deliveries = 0;
+  std::uint64_t retries = 0;
+  std::uint64_t late_latches = 0;
+  std::uint64_t unconfirmed = 0;  ///< nodes not confirmed right when the show had ended
+  std::uint64_t late = 0;         ///< nodes not confirmed right when the next switch was lit, all switches
+  double worst_skew_ms = 0;       ///< between the first and the last bus of a switch
+  std::uint64_t deaf = 0;         ///< times that a bus had not heard of the cue thread and stood still
+  bool real_time = false;         ///< all threads of the show got SCHED_FIFO
+  LatenessReport wake;            ///< of all bus threads
+  LatenessReport bare;            ///< of a thread that does nothing but sleep, in the same run
+  std::vector<LiveCueReport> cues;
+  std::vector<LiveBusReport> buses;
+  std::vector<std::vector<LookIndex>> floor;  ///< what every node should show at the end, by node of the rig
+};
+
+struct LiveOptions {
+  /// True: GO as soon as the roll call is over, and again whenever the show has stood for the shortest stand.
+  bool go = false;
+  /// Asked again and again by the calling thread: GO presses since the last time.
+  std::function<int()> presses;
+  const std::atomic<bool>* stop = nullptr;
+  /// Of show time, with the nodes that are not right now.
+  std::function<void(double share, std::size_t unconfirmed)> progress;
+  std::function<void(const std::string& line)> moment;  ///< a line for each cue and switch
+  /// The roll call is over: nodes that have not confirmed the opening.
+  std::function<void(std::size_t unconfirmed)> ready;
+};
+
+/// Plays a show on real ports in real time: a cue thread that sleeps until the next instant, and a thread for each bus.
+/// The calling thread only looks on. Whatever ends it, no lamp is made dark: nodes with a lease hold, then lose
+/// guidance; the others keep what they show.
+/// @param ports one for each bus, of its kind
+/// @return ErrorKind::refused for a plan that is not valid or that a bus cannot carry: then nothing has been sent;
+/// ErrorKind::interrupted when told to stop
+[[nodiscard]] Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig,
+                                          const std::vector<drivers::Port>& ports, const LiveOptions& options);
+
+}  // namespace footlight::app

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/run_command.hpp"
+
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "app/live/live_report.hpp"
+#include "app/live/live_run.hpp"
+#include "app/plan_step.hpp"
+#include "app/simulated_buses.hpp"
+#include "config/transport_map.hpp"
+
+namespace footlight::app {
+namespace {
+
+struct Options {
+  PlanChoice choice;
+  std::string transports;
+  bool go = false;
+};
+
+/// GO by the Enter key, or by a line of whoever writes to stdin.
+class EnterKey {
+ public:
+  int presses() {
+    int lines = 0;
+    std::array<char, 256> buffer{};
+    pollfd file{STDIN_FILENO, POLLIN, 0};
+    while (!closed_ && ::poll(&file, 1, 0) > 0) {
+      const ssize_t count = ::read(STDIN_FILENO, buffer.data(), buffer.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) closed_ = true;
+      for (ssize_t i = 0; i < count; ++i) lines += buffer[static_cast<std::size_t>(i)] == '\n' ? 1 : 0;
+    }
+    return lines;
+  }
+  [[nodiscard]] bool closed() const { return closed_; }
+
+ private:
+  bool closed_ = false;
+};
+
+Status<> find_buses(const Options& options, Rig& rig) {
+  if (!options.transports.empty()) {
+    if (auto taken = config::take_transports(options.transports, rig); !taken) {
+      return input_error(taken.error().to_text());
+    }
+  }
+  std::string without;
+  for (const Bus& bus : rig.buses) {
+    if (bus.simulated()) without += (without.empty() ? "" : ", ") + bus.name;
+  }
+  if (without.empty()) return Done{};
+  return input_error("no wire for these buses: " + without +
+                     " (a real URL in the rig or in --transport-map; `footlight sim --write-map` writes one, "
+                     "`footlight dryrun` needs none)");
+}
+
+/// Every port or none; all that the machine refuses is told at once.
+Result<std::vector<drivers::Port>> open_ports(const Rig& rig) {
+  std::vector<drivers::Port> ports;
+  std::string refused;
+  ErrorKind kind = ErrorKind::input;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    auto port = drivers::open_port(rig.buses[b], drivers::node_addresses(rig, BusIndex::of(b)));
+    if (port) {
+      ports.push_back(std::move(port).value());
+      continue;
+    }
+    refused += (refused.empty() ? "" : "\n") + port.error().message;
+    if (port.error().kind == ErrorKind::device) kind = ErrorKind::device;
+  }
+  if (!refused.empty()) return Error{kind, refused};
+  return ports;
+}
+
+std::string nodes_text(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
+
+Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
+                        const std::vector<drivers::Port>& ports) {
+  EnterKey enter;
+  LiveOptions live;
+  live.go = options.go;
+  live.stop = session.stop();
+  bool waits_for_nobody = false;
+  live.presses = [&] {
+    const int presses = options.go ? 0 : enter.presses();
+    if (enter.closed() && !waits_for_nobody) {
+      waits_for_nobody = true;
+      session.note("stdin is closed: nobody can press GO any more (--go presses it; SIGINT ends)");
+    }
+    return presses;
+  };
+  live.ready = [&](std::size_t unconfirmed) {
+    session.note(unconfirmed == 0 ? "every node shows the opening"
+                                  : nodes_text(unconfirmed) + " of the rig not confirmed to show the opening");
+    if (!options.go) session.note("Enter is GO");
+  };
+  live.progress = [&](double share, std::size_t unconfirmed) {
+    session.tell(unconfirmed == 0 ? "show" : "show, " + nodes_text(unconfirmed) + " not right,", share);
+  };
+  if (!session.json) live.moment = [&](const std::string& line) {
+    session.clear_line();
+    session.print_now(line);
+  };
+  auto report = live_run(planned.loaded.show, planned.plan(), rig, ports, live);
+  session.clear_line();
+  return report;
+}
+
+int run(Session& session, const Options& options) {
+  auto planned = plan_for(session, options.choice, false);
+  if (!planned) return session.fail(planned.error());
+  // A plan that is not proved, or whose lamps cannot be lit in time, never opens a wire.
+  if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
+  Rig rig = planned->loaded.rig;
+  if (auto found = find_buses(options, rig); !found) return session.fail(found.error());
+  if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
+  const auto ports = open_ports(rig);
+  if (!ports) return session.fail(ports.error());
+  const auto report = play(session, options, *planned, rig, *ports);
+  if (!report) return session.fail(report.error());
+  session.print(session.json ? live_json(*report, rig) : live_text(*report));
+  if (report->unconfirmed > 0) return session.fail(device_error(live_failure(*report)));
+  return 0;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
+  CLI::App* command = program.add_subcommand("run", "Play the show on its real buses, in real time");
+  auto options = std::make_shared<Options>();
+  options->choice.add_options(*command);
+  command->add_option("--transport-map", options->transports,
+                      "YAML file: where buses are here and today, instead of where the rig says");
+  command->add_flag("--go", options->go, "press GO when all nodes have answered, and whenever the show waits");
+  session.add_options(*command, true);
+  command->footer(
+      "Enter is GO. At first the look table is uploaded, every node asked and the opening lit. A plan that is refused\n"
+      "never reaches a marker. At the end every node has to have confirmed what it shows: exit status 4 when one has\n"
+      "not, or when a bus cannot be opened. SIGINT ends it and makes no lamp dark: markers hold, then lose guidance.\n\n"
+      "Examples:\n  footlight run show.yaml\n  footlight sim show.yaml --write-map map.yaml &\n"
+      "  footlight run show.yaml --transport-map map.yaml --go\n");
+  command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
+}
+
+}  // namespace footlight::app

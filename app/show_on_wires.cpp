@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/show_on_wires.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "controller/bus_budget.hpp"
+#include "drivers/registry.hpp"
+
+namespace footlight::app {
+namespace {
+
+Duration roll_call(const Rig& rig) {
+  std::vector<std::size_t> nodes(rig.buses.size(), 0);
+  for (const Node& node : rig.nodes) ++nodes[node.bus.at()];
+  const std::size_t most = nodes.empty() ? 0 : *std::ranges::max_element(nodes);
+  return milliseconds(5000) + static_cast<Duration::rep>(most) * milliseconds(250);
+}
+
+/// How long before the first switch of each cue the slowest bus has to know of it.
+std::vector<Duration> notices_of(const ShowOnWires& show) {
+  std::vector<Duration> notices(show.plays.size());
+  const auto& switches = show.schedule->switches();
+  for (std::size_t k = 1; k < switches.size(); ++k) {
+    if (!switches[k].cue || switches[k].cue == switches[k - 1].cue) continue;
+    Duration& notice = notices[*switches[k].cue];
+    for (const auto& loop : show.loops) notice = std::max(notice, loop->notice(k));
+  }
+  return notices;
+}
+
+}  // namespace
+
+Duration run_length(const std::vector<controller::CuePlay>& plays) {
+  Duration sum{};
+  for (const auto& play : plays) sum += (play.to - play.from) + play.gap_after.value_or(controller::kShortestHold);
+  return sum;
+}
+
+Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& plan, const Rig& rig,
+                                                  std::vector<std::unique_ptr<drivers::Driver>> drivers) {
+  if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
+  auto out = std::make_unique<ShowOnWires>();
+  out->drivers = std::move(drivers);
+  out->plays = controller::cue_plays(show, plan);
+  auto schedule = controller::build_schedule(show, plan, rig, out->drivers);
+  if (!schedule) return std::move(schedule).error();
+  out->schedule = std::move(schedule).value();
+  for (const auto& driver : out->drivers) out->latch_ahead = std::max(out->latch_ahead, driver->latch_time());
+  out->opening = std::max(roll_call(rig), controller::opening_time(*out->schedule, rig, out->drivers));
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    out->loops.push_back(std::make_unique<controller::BusLoop>(
+        *out->schedule, drivers::node_addresses(rig, BusIndex::of(b)), *out->drivers[b]));
+  }
+  out->engine.emplace(*out->schedule, out->plays, notices_of(*out));
+  return out;
+}
+
+bool GoWhenWaiting::step(controller::CueEngine& engine, Instant now) noexcept {
+  if (engine.finished() || engine.active()) {
+    at_ = kNever;
+    return false;
+  }
+  if (at_ == kNever) at_ = now + controller::kShortestHold;
+  if (now < at_) return false;
+  at_ = kNever;
+  return engine.go(now) == controller::GoAnswer::started;
+}
+
+}  // namespace footlight::app

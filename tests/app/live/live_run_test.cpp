@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/live/live_run.hpp"
+
+#include <atomic>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sim/endpoints/served_rig.hpp"
+#include "tests/support/small_show.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace footlight::app {
+namespace {
+
+using tests::SmallShow;
+
+/// A show of four seconds on three buses that a thread serves on pseudo-terminals and a port, as `footlight sim` does.
+class LiveRunTest : public ::testing::Test {
+ protected:
+  LiveRunTest() {
+    small_ = tests::random_show(8, 6, 12, 1, 2, 5);
+    small_.rig = tests::lamps_everywhere(small_.show.stage.grid,
+                                         {BusKind::serial, BusKind::modbus_rtu, BusKind::modbus_tcp}, 115'200, 8);
+    sim::Serving serving;
+    serving.folder = folder_.path();
+    auto served = sim::ServedRig::open(small_.rig, serving, clock_, nullptr);
+    EXPECT_TRUE(served);
+    served_ = std::move(served).value();
+    for (std::size_t b = 0; b < small_.rig.buses.size(); ++b) small_.rig.buses[b].url = served_->served()[b].url;
+    server_ = std::thread([this] {
+      while (!over_.load()) served_->step(milliseconds(20), [](Instant) {});
+    });
+  }
+  ~LiveRunTest() override { stop_serving(); }
+  void stop_serving() {
+    over_.store(true);
+    if (server_.joinable()) server_.join();
+  }
+  std::vector<drivers::Port> open() {
+    std::vector<drivers::Port> ports;
+    for (std::size_t b = 0; b < small_.rig.buses.size(); ++b) {
+      auto port = drivers::open_port(small_.rig.buses[b], drivers::node_addresses(small_.rig, BusIndex::of(b)));
+      EXPECT_TRUE(port) << port.error().message;
+      if (port) ports.push_back(std::move(port).value());
+    }
+    return ports;
+  }
+
+  test::TemporaryFolder folder_;
+  SteadyClock clock_;
+  SmallShow small_;
+  std::unique_ptr<sim::ServedRig> served_;
+  std::atomic<bool> over_{false};
+  std::thread server_;
+};
+
+TEST_F(LiveRunTest, EveryMarkerShowsTheLastSwitchInTheEnd) {
+  const auto ports = open();
+  LiveOptions options;
+  options.go = true;
+  std::vector<std::string> moments;
+  options.moment = [&](const std::string& line) { moments.push_back(line); };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->unconfirmed, 0U);
+  EXPECT_EQ(report->deaf, 0U);
+  EXPECT_EQ(moments.size() + 1, report->switches) << "all but the opening";
+  for (const LiveBusReport& bus : report->buses) {
+    EXPECT_GT(bus.deliveries, 0U) << bus.name;
+    EXPECT_GT(bus.latch.count, 0U) << bus.name;
+  }
+  stop_serving();
+  for (std::size_t n = 0; n < small_.rig.nodes.size(); ++n) {
+    for (std::size_t c = 0; c < small_.rig.nodes[n].channels.size(); ++c) {
+      EXPECT_EQ(served_->rig().shown(NodeIndex::of(n), static_cast<int>(c)), report->floor[n][c]) << n << ":" << c;
+    }
+  }
+}
+
+TEST_F(LiveRunTest, WithoutGoTheOpeningStandsAndStopEndsIt) {
+  const auto ports = open();
+  std::atomic<bool> stop{false};
+  LiveOptions options;
+  options.stop = &stop;
+  std::size_t unconfirmed = 99;
+  options.ready = [&](std::size_t nodes) {
+    unconfirmed = nodes;
+    stop.store(true);
+  };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::interrupted);
+  EXPECT_EQ(unconfirmed, 0U);
+}
+
+TEST_F(LiveRunTest, APlanThatIsNotValidSendsNothing) {
+  const auto ports = open();
+  small_.plan.valid = false;
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::refused);
+  EXPECT_EQ(report.error().message, "the plan is not valid and never lights a marker");
+}
+
+}  // namespace
+}  // namespace footlight::app

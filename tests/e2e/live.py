@@ -1,0 +1,269 @@
+"""The show in real time: `footlight sim` on one side; `footlight run`, and programs of other hands, on the other. Part of run.py."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+SHOW = """footlight: 1
+title: Twelve
+stage:
+  grid: {kind: square, columns: 12, rows: 8, pitch: 1 m}
+  clearance: 0.5 m
+  max_speed: 4 m/s
+performers:
+  count: 12
+  groups:
+    - {name: left, members: 1-6, colour: "#FF69B4"}
+    - {name: right, members: 7-12, colour: "#00A0FF"}
+music: {tempo: 240, meter: 4/4}
+sections:
+  - {name: line, from: {cells: line.csv}, start: count 1, hold: 2 counts}
+  - {name: ring, from: {cells: ring.csv}, start: count 13, hold: 2 counts}
+  - {name: arrow, from: {cells: arrow.csv}, start: count 25, hold: 2 counts}
+cues:
+  - {number: "1", section: line, name: Opening line}
+  - {number: "2", section: ring, name: Ring, continue: auto-follow}
+  - {number: "3", section: arrow, name: Arrow}
+announce: 2 counts
+rig: rig.yaml
+"""
+
+BUSES = {"left": "{name: left, kind: serial, url: 'serial:///dev/nowhere'}",
+         "middle": "{name: middle, kind: modbus-rtu, url: 'rtu:///dev/nowhere', bits_per_second: 115200}",
+         "right": "{name: right, kind: modbus-tcp, url: 'tcp://192.0.2.7:502'}"}
+
+
+def wait_for(what, told, seconds=20):
+    """Polls until `what` is true; a machine under load takes its time."""
+    for _ in range(int(seconds * 50)):
+        value = what()
+        if value:
+            return value
+        time.sleep(0.02)
+    raise AssertionError(f"waited {seconds} s for {told}")
+
+
+def make_cases(Case, footlight, program):
+    """The test cases, over run.py's own `Case` and `footlight`; `program` gives the path of the program."""
+
+    class Live(Case):
+        def make_show(self, buses=("left", "middle", "right"), show=SHOW, profile=""):
+            """The twelve people of `footlight new` on a rig of these buses, in six seconds."""
+            footlight("new", self.path("s"))
+            self.show = self.path("s", "show.yaml")
+            with open(self.show, "w") as f:
+                f.write(show)
+            with open(self.path("s", "rig.yaml"), "w") as f:
+                f.write("rig: 1\nbuses:\n" + "".join(f"  - {BUSES[b] if not profile else BUSES[b][:-1] + ', profile: ' + profile + '}'}\n" for b in buses) +
+                        f"floor: {{buses: [{', '.join(buses)}], channels_per_node: 8}}\n")
+            return self.show
+
+        def start(self, *command, **options):
+            process = subprocess.Popen(list(map(str, command)), stdin=subprocess.DEVNULL, text=True, **options)
+            self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait()))
+            return process
+
+        def serve(self, *options):
+            """Starts `footlight sim`; its lines go into a file. Returns the URL of each bus."""
+            self.ports = self.path("ports")
+            self.map = self.path("map.yaml")
+            self.lines = self.path("sim.jsonl")
+            self.sim = self.start(program(), "sim", self.show, "--json", "--dir", self.ports, "--write-map", self.map, *options,
+                                  stdout=open(self.lines, "w"), stderr=subprocess.DEVNULL)
+            wait_for(lambda: os.path.exists(self.lines) and open(self.lines).read().endswith("\n") and os.path.exists(self.map), "footlight sim")
+            with open(self.lines) as f:
+                return {b["bus"]: b["url"] for b in json.loads(f.readline())["serving"]}
+
+        def end_of_sim(self):
+            """What every lamp shows when the simulation is told to end: {node: {channel: look}}."""
+            self.sim.send_signal(signal.SIGINT)
+            self.assertEqual(self.sim.wait(20), 0)
+            with open(self.lines) as f:
+                last = json.loads(f.readlines()[-1])
+            self.assertEqual(os.listdir(self.ports), [], "the links are gone")
+            return {n["node"]: {int(c): look for c, look in n["looks"].items()} for n in last["floor"]}
+
+        def changes(self):
+            with open(self.lines) as f:
+                return [line for line in map(json.loads, f.read().splitlines()) if "look" in line]
+
+        def play(self, *options, status=0):
+            return json.loads(footlight("run", self.show, "--transport-map", self.map, "--go", "--json", *options, status=status)[0])
+
+        def assert_floor(self, report):
+            """What the markers show, by their own word, is what the schedule says."""
+            shown = self.end_of_sim()
+            planned = {n["node"]: n["looks"] for n in report["floor"]}
+            self.assertEqual(set(shown), set(planned))
+            wrong = [(node, channel, look, planned[node][channel]) for node, looks in shown.items() for channel, look in looks.items() if look != planned[node][channel]]
+            self.assertEqual(wrong, [])
+            self.assertGreater(sum(look not in (0, 255) for looks in shown.values() for look in looks.values()), 11, "twelve people stand somewhere")
+
+        def bad_line(self, bus, url, share):
+            """socat between run and sim. Returns what starts it."""
+            link = self.path(f"bad-{bus}")
+            good = url.split("://")[1]
+            with open(self.map) as f:
+                text = f.read()
+            with open(self.map, "w") as f:
+                f.write(text.replace(good, link))
+
+            def plug():
+                process = self.start("socat", f"PTY,link={link},rawer", f"SYSTEM:{sys.executable} {HERE}/bad_line.py {good} {share}", stderr=subprocess.DEVNULL)
+                wait_for(lambda: os.path.exists(link), "socat")
+                return process
+
+            return plug
+
+        def test_a_show_is_right_on_every_marker_over_ptys_and_tcp(self):
+            self.make_show()
+            self.serve()
+            report = self.play()
+            self.assertEqual(report["unconfirmed"], 0, report)
+            self.assertEqual({b["kind"] for b in report["buses"]}, {"serial", "modbus-rtu", "modbus-tcp"})
+            for bus in report["buses"]:
+                self.assertGreater(bus["deliveries"], 0, bus)
+            self.assertGreater(report["cues"][1]["go_to_last_lamp_ms"], 0, "the second cue is started by GO and lights lamps at once")
+            self.assert_floor(report)
+
+        def test_a_line_that_garbles_and_is_cut_for_a_second_is_right_in_the_end(self):
+            self.make_show(("left", "middle"))
+            urls = self.serve()
+            plugs = [self.bad_line(bus, urls[bus], 0.05) for bus in urls]
+            cables = [plug() for plug in plugs]
+            said = []
+            run = self.start(program(), "run", self.show, "--transport-map", self.map, "--go", "--json", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            reader = threading.Thread(target=lambda: said.append(run.communicate()))
+            reader.start()
+            wait_for(lambda: any(c["look"] not in (0, 255) for c in self.changes()), "the opening")
+            time.sleep(1)
+            for cable in cables:
+                cable.terminate()  # so that its link goes, too: a link that is left leads to whichever terminal comes next
+                cable.wait()
+            time.sleep(1)
+            cables = [plug() for plug in plugs]
+            reader.join(60)
+            self.assertEqual(run.returncode, 0, said)
+            report = json.loads(said[0][0])
+            self.assertEqual(report["unconfirmed"], 0)
+            for bus in report["buses"]:
+                self.assertGreater(bus["misses"], 0, "the cable did nothing")
+            self.assert_floor(report)
+
+        def test_faults_by_name_are_overcome(self):
+            self.make_show()
+            self.serve("--faults", "loss=5%,corrupt=1%,reboot=2,until=60%", "--seed", "3")
+            report = self.play()
+            self.assertEqual(report["unconfirmed"], 0, report)
+            self.assert_floor(report)
+
+        def test_a_second_controller_after_a_killed_one_finds_the_floor_as_it_is(self):
+            self.make_show()
+            self.serve()
+            first = self.start(program(), "run", self.show, "--transport-map", self.map, "--go", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            wait_for(lambda: any(c["look"] not in (0, 255) for c in self.changes()), "the opening")
+            first.kill()
+            first.wait()
+            report = self.play()
+            self.assertEqual(report["unconfirmed"], 0, report)
+            self.assert_floor(report)
+
+        def test_an_interrupted_run_makes_no_lamp_dark(self):
+            self.make_show()
+            self.serve()
+            run = self.start(program(), "run", self.show, "--transport-map", self.map, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            while "every node shows the opening" not in run.stderr.readline():
+                self.assertIsNone(run.poll())
+            lit = len(self.changes())
+            run.send_signal(signal.SIGINT)
+            self.assertIn("interrupted: the lamps keep what they show until their lease ends", run.communicate(timeout=20)[1])
+            self.assertEqual(run.returncode, 130)
+            wait_for(lambda: set({(c["node"], c["channel"]): c["look"] for c in self.changes()}.values()) == {255}, "the leases to end")
+            self.assertEqual({c["look"] for c in self.changes()[lit:]}, {255}, "NO-GUIDANCE, and nothing else")
+
+        def test_a_plan_that_is_refused_never_reaches_a_marker(self):
+            self.make_show(show=SHOW.replace("start: count 13", "start: count 4"))
+            self.serve()
+            _, said = footlight("run", self.show, "--transport-map", self.map, "--go", status=3)
+            self.assertIn("performer 8 would walk 6.1 m from H2 to G8", said)
+            self.assertEqual({look for looks in self.end_of_sim().values() for look in looks.values()}, {255})
+
+        def test_a_bus_without_a_wire_and_a_port_that_is_not_there_are_told(self):
+            self.make_show()
+            _, said = footlight("run", self.show, "--go", status=4)
+            self.assertIn('bus "left": serial port "/dev/nowhere": No such file or directory', said)
+            self.assertIn('bus "middle": Modbus line "/dev/nowhere": not opened: No such file or directory', said)
+            with open(self.path("s", "rig.yaml")) as f:
+                rig = f.read()
+            with open(self.path("s", "rig.yaml"), "w") as f:
+                f.write(rig.replace("serial:///dev/nowhere", "sim://serial"))
+            _, said = footlight("run", self.show, "--go", status=2)
+            self.assertIn("no wire for these buses: left (a real URL in the rig or in --transport-map", said)
+
+        def test_mbpoll_reads_and_writes_rtu_and_tcp_markers(self):
+            self.make_show()
+            urls = self.serve()
+            port = urls["right"].rsplit(":", 1)[1]
+            for line in (["-m", "rtu", "-b", "115200", "-P", "even", urls["middle"].split("://")[1]], ["-m", "tcp", "-p", port, "127.0.0.1"]):
+                def mbpoll(*options, values=()):
+                    done = subprocess.run(["mbpoll", "-1", "-q", "-0", "-a", "2", *options, *line, *values], capture_output=True, text=True, timeout=60)
+                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                    return done.stdout
+                self.assertIn("[67]: \t1", mbpoll("-r", "64", "-c", "6"), "one boot")
+                self.assertIn("Written 5 references", mbpoll("-r", "0", values=map(str, (9, 0x0102, 0x0304, 0x0506, 0x0708))))
+                self.assertIn("[64]: \t9", mbpoll("-r", "64", "-c", "1"), "pending")
+                self.assertIn("Written 3 references", mbpoll("-r", "32", values=map(str, (9, 9 ^ 0x5A5A, 9 ^ 0xA5A5))))
+                self.assertIn(f"[64]: \t{9 << 8}", mbpoll("-r", "64", "-c", "1"), "shown")
+            floor = self.end_of_sim()
+            for node in ("middle-2", "right-2"):
+                self.assertEqual(floor[node], {i: i + 1 for i in range(8)})
+
+        def test_pymodbus_reads_and_writes_rtu_and_tcp_markers(self):
+            from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+            self.make_show()
+            urls = self.serve()
+            # No parity: pyserial asks for it anew at every change and takes it ill that a pseudo-terminal has none.
+            clients = [ModbusSerialClient(urls["middle"].split("://")[1], baudrate=115200, parity="N", timeout=10),
+                       ModbusTcpClient("127.0.0.1", port=int(urls["right"].rsplit(":", 1)[1]), timeout=10)]
+            for client in clients:
+                self.assertTrue(client.connect())
+                self.assertFalse(client.write_registers(0, [7, 0x0A0B, 0x0C0D, 0x0E0F, 0x1011], slave=3).isError())
+                self.assertFalse(client.write_registers(32, [7, 7 ^ 0x5A5A, 7 ^ 0xA5A5], slave=3).isError())
+                status = client.read_holding_registers(64, 6, slave=3)
+                self.assertEqual(status.registers[0], 7 << 8)
+                self.assertEqual(status.registers[2], 1, "showing")
+                self.assertEqual(client.read_holding_registers(64, 7, slave=3).exception_code, 2)
+                client.close()
+            floor = self.end_of_sim()
+            for node in ("middle-3", "right-3"):
+                self.assertEqual(floor[node], {i: i + 10 for i in range(8)})
+
+        def test_our_driver_drives_a_pymodbus_server(self):
+            """A foreign device: looks act at once, one a register, nothing can be read back."""
+            profile = self.path("foreign.yaml")
+            with open(profile, "w") as f:
+                f.write("profile: 1\nname: foreign\nlook_register: 100\nlooks_per_register: 1\npreload_sequence: false\n")
+            self.make_show(("right",), profile=profile)
+            port, registers = self.path("port"), self.path("registers.json")
+            self.start(sys.executable, os.path.join(HERE, "modbus_server.py"), port, registers, "12")
+            with open(wait_for(lambda: os.path.exists(port) and port, "the server")) as f:
+                number = f.read()
+            self.map = self.path("map.yaml")
+            with open(self.map, "w") as f:
+                f.write(f"transports: 1\nbuses:\n  - {{name: right, url: 'tcp://127.0.0.1:{number}'}}\n")
+            report = self.play()
+            self.assertEqual(report["unconfirmed"], 0)
+            self.assertGreater(report["buses"][0]["unverified"], 0)
+            self.assertEqual(report["buses"][0]["deliveries"], 0, "nothing is taken for proved")
+            with open(registers) as f:
+                held = json.load(f)
+            for address, node in enumerate(report["floor"], 1):
+                self.assertEqual(held[str(address)], node["looks"], node["node"])
+
+    return Live
