@@ -25,37 +25,6 @@ std::string field(std::string_view text) {
   return out + "\"";
 }
 
-/// Who comes to which cell when.
-class Arrivals {
- public:
-  explicit Arrivals(const Plan& plan) : by_cell_(static_cast<std::size_t>(plan.stage.grid.size())) {
-    for (const auto& track : plan.tracks) {
-      for (std::size_t k = 1; k < track.size(); ++k) {
-        if (track[k].cell != track[k - 1].cell) by_cell_[track[k].cell.at()].push_back(track[k].time);
-      }
-    }
-    for (auto& times : by_cell_) std::sort(times.begin(), times.end());
-  }
-  /// Whether somebody arrives on the cell after `from` and until `to`.
-  [[nodiscard]] bool between(CellIndex cell, Instant from, Instant to) const {
-    const auto& times = by_cell_[cell.at()];
-    const auto first = std::upper_bound(times.begin(), times.end(), from);
-    return first != times.end() && *first <= to;
-  }
-
- private:
-  std::vector<std::vector<Instant>> by_cell_;
-};
-
-std::string_view look_of(const Plan& plan, const std::vector<Mark>& track, std::size_t k, const Arrivals& arrivals) {
-  const std::vector<CellIndex>& reserve = plan.sections[section_at(plan, track[k].time)].reserve;
-  if (std::binary_search(reserve.begin(), reserve.end(), track[k].cell)) return "dark";
-  const bool stays = k + 1 == track.size() || track[k + 1].cell == track[k].cell;
-  if (stays) return "here";
-  if (arrivals.between(track[k].cell, track[k].time, track[k + 1].time)) return "handover";
-  return k > 0 && track[k - 1].cell != track[k].cell ? "arrive" : "here";
-}
-
 Json cells_of(const Grid& grid, const std::vector<CellIndex>& cells) {
   Json out = Json::array();
   for (const CellIndex index : cells) {
@@ -121,8 +90,33 @@ Json section_of(const Plan& plan, const Show& show, const PlanSection& section) 
 
 }  // namespace
 
+MarkLooks::MarkLooks(const Plan& plan) : plan_(plan), arrivals_(static_cast<std::size_t>(plan.stage.grid.size())) {
+  for (const auto& track : plan.tracks) {
+    for (std::size_t k = 1; k < track.size(); ++k) {
+      if (track[k].cell != track[k - 1].cell) arrivals_[track[k].cell.at()].push_back(track[k].time);
+    }
+  }
+  for (auto& times : arrivals_) std::sort(times.begin(), times.end());
+}
+
+bool MarkLooks::arrives(CellIndex cell, Instant from, Instant to) const {
+  const auto& times = arrivals_[cell.at()];
+  const auto first = std::upper_bound(times.begin(), times.end(), from);
+  return first != times.end() && *first <= to;
+}
+
+std::string_view MarkLooks::of(std::size_t performer, std::size_t k) const {
+  const auto& track = plan_.tracks[performer];
+  const std::vector<CellIndex>& reserve = plan_.sections[section_at(plan_, track[k].time)].reserve;
+  if (std::binary_search(reserve.begin(), reserve.end(), track[k].cell)) return "dark";
+  const bool stays = k + 1 == track.size() || track[k + 1].cell == track[k].cell;
+  if (stays) return "here";
+  if (arrives(track[k].cell, track[k].time, track[k + 1].time)) return "handover";
+  return k > 0 && track[k - 1].cell != track[k].cell ? "arrive" : "here";
+}
+
 std::string marks_csv(const Plan& plan, const Show& show) {
-  const Arrivals arrivals(plan);
+  const MarkLooks looks(plan);
   const Grid& grid = plan.stage.grid;
   std::vector<std::string> places;  // "col,row,x_m,y_m" of each cell
   for (int i = 0; i < grid.size(); ++i) {
@@ -142,7 +136,7 @@ std::string marks_csv(const Plan& plan, const Show& show) {
         instant = exact(tidy_count(show.tempo.count_at(track[k].time))) + "," + exact_seconds(track[k].time);
       }
       out.append(name).append(1, ',').append(instant).append(1, ',').append(places[track[k].cell.at()]).append(1, ',');
-      out += look_of(plan, track, k, arrivals);
+      out += looks.of(p, k);
       out.append(1, ',').append(field(plan.sections[section_at(plan, track[k].time)].name)).append(1, '\n');
     }
   }

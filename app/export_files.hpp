@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/plan.hpp"
 #include "core/show.hpp"
@@ -11,10 +13,25 @@ namespace footlight::app {
 // The three files that other programs read (docs/export.md). Numbers survive a round trip; the same instant prints the
 // same text in every row and file.
 
+/// What each mark is, as marks.csv and dot sheets tell it: `dark` in the reserve, `here` for who stays, `handover`
+/// where the performer leaves and somebody else comes before the next mark, `arrive` where the performer passes on the
+/// way.
+class MarkLooks {
+ public:
+  /// Borrows the plan. O(marks log marks)
+  explicit MarkLooks(const Plan& plan);
+  [[nodiscard]] std::string_view of(std::size_t performer, std::size_t mark) const;
+
+ private:
+  /// Whether somebody arrives on the cell after `from` and until `to`.
+  [[nodiscard]] bool arrives(CellIndex cell, Instant from, Instant to) const;
+
+  const Plan& plan_;
+  std::vector<std::vector<Instant>> arrivals_;  ///< at each cell, ascending
+};
+
 /// `performer,count,time_s,col,row,x_m,y_m,look,section`, a row for each mark, by performer in the show's order, then
-/// time. `look` is what the lamp of the cell tells from this mark on: `dark` in the reserve, `here` for who stays,
-/// `handover` where the performer leaves and somebody else comes before the next mark, `arrive` where the performer
-/// passes on the way.
+/// time. `look`: see MarkLooks.
 [[nodiscard]] std::string marks_csv(const Plan& plan, const Show& show);
 /// `formation,count,time_s,frame,performer,col,row`; no frame where there is no video.
 [[nodiscard]] std::string formations_csv(const Plan& plan);

@@ -18,6 +18,7 @@
 #include "app/plan_command.hpp"
 #include "app/run_command.hpp"
 #include "app/session.hpp"
+#include "app/sheets_command.hpp"
 #include "app/sim_command.hpp"
 #include "app/why_command.hpp"
 #include "config/nearest.hpp"
@@ -26,8 +27,9 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,    add_check_command,  add_plan_command, add_measure_command, add_why_command,
-    add_export_command, add_dryrun_command, add_dark_command, add_sim_command,     add_run_command,
+    add_new_command,    add_check_command,  add_plan_command,   add_measure_command, add_why_command,
+    add_export_command, add_sheets_command, add_dryrun_command, add_dark_command,    add_sim_command,
+    add_run_command,
 };
 
 constexpr const char* kFooter =

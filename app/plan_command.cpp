@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/picture.hpp"
+#include "app/paper/picture.hpp"
 #include "app/plan_step.hpp"
 #include "app/plan_summary.hpp"
 #include "config/output_file.hpp"

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/find_in_show.hpp"
 #include "app/plan_step.hpp"
 #include "app/why_report.hpp"
 #include "config/nearest.hpp"
@@ -31,35 +32,15 @@ struct Options {
 /// Formations [first, last] of one section.
 using Asked = std::pair<FormationIndex, FormationIndex>;
 
-Result<PerformerIndex> find_performer(const Show& show, const std::string& word) {
-  std::vector<std::string> known;
-  for (std::size_t p = 0; p < show.performers.size(); ++p) {
-    if (show.performers[p].id == word) return PerformerIndex::of(p);
-    known.push_back(show.performers[p].id);
-  }
-  for (std::size_t p = 0; p < show.performers.size(); ++p) {
-    if (show.performers[p].name == word) return PerformerIndex::of(p);
-    known.push_back(show.performers[p].name);
-  }
-  return input_error(fmt::format("there is no performer {} ({})", config::in_quotes(word),
-                                 config::suggestion(word, known, "performers")));
-}
-
 Error opening_form(const std::string& what) {
   return input_error(what + " is the opening form: nobody walks into it (ask for a later one)");
 }
 
-Result<Asked> find_formation(const Plan& plan, const std::string& word) {
-  std::vector<std::string> known;
-  for (std::size_t k = 0; k < plan.formations.size(); ++k) {
-    if (plan.formations[k].id == word) {
-      if (k == 0) return opening_form(fmt::format("formation {}", config::in_quotes(word)));
-      return Asked{FormationIndex::of(k), FormationIndex::of(k)};
-    }
-    known.push_back(plan.formations[k].id);
-  }
-  return input_error(fmt::format("there is no formation {} ({})", config::in_quotes(word),
-                                 config::suggestion(word, known, "formations")));
+Result<Asked> move_into(const Plan& plan, const std::string& word) {
+  const auto found = find_formation(plan, word);
+  if (!found) return found.error();
+  if (*found == FormationIndex(0)) return opening_form(fmt::format("formation {}", config::in_quotes(word)));
+  return Asked{*found, *found};
 }
 
 Result<Asked> find_cue(const Show& show, const Plan& plan, const std::string& word) {
@@ -96,7 +77,7 @@ Result<Asked> find_moves(const Show& show, const Plan& plan, const Options& opti
                    (options.time_s ? 1 : 0);
   if (ways != 1) return input_error("say which move: one of CUE, --formation, --count and --time");
   if (!options.cue.empty()) return find_cue(show, plan, options.cue);
-  if (!options.formation.empty()) return find_formation(plan, options.formation);
+  if (!options.formation.empty()) return move_into(plan, options.formation);
   return find_instant(show, plan, options.count ? show.tempo.at(*options.count) : instant_at(*options.time_s));
 }
 

@@ -28,7 +28,8 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"netlink/": r"^drivers/transports/",
     r"sqlite3\.h": r"^config/",
     r"opencv2/": r"^config/media/|^config/decode|^planner/",
-    r"cairo": r"^app/",
+    r"cairo": r"^app/paper/",
+    r"pango": r"^app/paper/",
     r"CLI/": r"^app/",
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/picture.hpp"
+#include "app/paper/picture.hpp"
 
 #include <cstring>
 #include <string_view>
@@ -7,7 +7,8 @@
 #include <cairo.h>
 #include <gtest/gtest.h>
 
-#include "app/paper.hpp"
+#include "app/paper/canvas.hpp"
+#include "app/paper/drawn_floor.hpp"
 #include "core/check.hpp"
 #include "tests/support/plan_builder.hpp"
 
@@ -168,7 +169,7 @@ Film left_half() {
 TEST(Picture, WhoStandsOutsideOfThePictureIsARing) {
   Scene scene;
   const Film film = left_half();
-  const Frame frame(scene.plan.stage.grid);
+  const Frame frame(scene.plan.stage.grid, {}, 1, 1);
   FilmPlacement placement;
   placement.stage_to_frame = {1, 0, -frame.low.x, 0, -1, frame.high.y};
   scene.plan.sections[0].film = placement;
@@ -188,8 +189,8 @@ TEST(Picture, SaysWhatItsMarksMean) {
   EXPECT_TRUE(marked) << "a dot as those of the picture, below it";
 }
 
-TEST(Paper, WordsAreShortenedToTheRoomThatTheyHave) {
-  const Paper paper(*Grid::make(GridKind::square, 10, 4, 1), {0, 0, 0});
+TEST(Canvas, WordsAreShortenedToTheRoomThatTheyHave) {
+  const Canvas paper = Canvas::png(10, 10, {0, 0, 0});
   const std::string name = "Amelia Pond";
   EXPECT_EQ(paper.shortened(name, 13, paper.width_of(name, 13)), name);
   EXPECT_EQ(paper.shortened(name, 13, paper.width_of(name, 13) - 1), "Amelia");

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/paper/stamp.hpp"
+
+#include <fmt/format.h>
+
+#include "config/plan_digest.hpp"
+
+namespace footlight::app {
+namespace {
+
+constexpr std::size_t kShowDigits = 8;
+constexpr std::size_t kPlanDigits = 12;
+
+}  // namespace
+
+Stamp::Stamp(const Plan& of)
+    : title(of.title),
+      show(of.show_hash.substr(0, kShowDigits)),
+      plan(config::digest_of(of).substr(0, kPlanDigits)),
+      valid(of.valid) {}
+
+std::string Stamp::line() const {
+  return fmt::format("{}   show {}   plan {}   Footlight {}{}", title, show, plan, FOOTLIGHT_VERSION,
+                     valid ? "" : "   REFUSED: this plan breaks its limits");
+}
+
+}  // namespace footlight::app
