@@ -26,6 +26,8 @@ const char* simulated_url(BusKind kind) {
   return "sim://rtu";
 }
 
+}  // namespace
+
 drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, BusIndex bus) {
   switch (rig.buses[bus.at()].kind) {
     case BusKind::serial:
@@ -40,8 +42,6 @@ drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, Bus
   }
   return {};
 }
-
-}  // namespace
 
 Rig with_simulated_buses(Rig rig) {
   for (Bus& bus : rig.buses) {

@@ -9,12 +9,16 @@
 #include "core/rig.hpp"
 #include "core/show.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/registry.hpp"
 #include "sim/simulated_rig.hpp"
 
 namespace footlight::app {
 
 /// The rig with every bus that has a real URL simulated as its kind.
 [[nodiscard]] Rig with_simulated_buses(Rig rig);
+
+/// The port of a simulated bus, of the kind that the bus needs.
+[[nodiscard]] drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, BusIndex bus);
 
 /// The real drivers on simulated buses, one for each bus of the rig. Errors: addresses that a bus cannot have.
 [[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated,

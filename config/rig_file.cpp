@@ -2,7 +2,6 @@
 #include "config/rig_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <map>
 #include <numeric>
@@ -14,52 +13,6 @@
 
 namespace footlight::config {
 namespace {
-
-struct Scheme {
-  std::string_view prefix;
-  BusKind kind;
-  std::string_view example;
-};
-// The longer of two prefixes of one beginning stands first.
-constexpr std::array kSchemes{
-    Scheme{"sim://serial", BusKind::serial, "serial:///dev/serial/by-id/..."},
-    Scheme{"sim://rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/..."},
-    Scheme{"sim://tcp", BusKind::modbus_tcp, "tcp://host:502"},
-    Scheme{"sim://can", BusKind::can, "can://can0"},
-    Scheme{"serial://", BusKind::serial, ""},
-    Scheme{"rtu://", BusKind::modbus_rtu, ""},
-    Scheme{"tcp://", BusKind::modbus_tcp, ""},
-    Scheme{"can://", BusKind::can, ""},
-};
-
-}  // namespace
-
-std::optional<BusKind> kind_of_url(std::string_view url) {
-  for (const Scheme& scheme : kSchemes) {
-    const bool simulated = !scheme.example.empty();
-    const bool begins = url.substr(0, scheme.prefix.size()) == scheme.prefix;
-    if (begins && (simulated ? url.size() == scheme.prefix.size() : url.size() > scheme.prefix.size())) {
-      return scheme.kind;
-    }
-  }
-  return std::nullopt;
-}
-
-std::string example_url(BusKind kind) {
-  for (const Scheme& scheme : kSchemes) {
-    if (scheme.kind == kind) return std::string(scheme.example);
-  }
-  return {};
-}
-
-namespace {
-
-std::string urls_of(BusKind kind) {
-  for (const Scheme& scheme : kSchemes) {
-    if (scheme.kind == kind) return std::string(scheme.example) + " or " + std::string(scheme.prefix);
-  }
-  return {};
-}
 
 /// Reads one rig: buses, then nodes, then the floor that takes what is left.
 class RigReader {
@@ -117,9 +70,7 @@ class RigReader {
     const auto by_url = url ? kind_of_url(*url) : std::nullopt;
     if (url && !by_url) {
       reader.error("url", in_quotes(*url) + " is not the URL of a bus",
-                   choice ? urls_of(static_cast<BusKind>(*choice))
-                          : "serial:///dev/..., rtu:///dev/..., tcp://host:502, can://can0, sim://serial, sim://rtu, "
-                            "sim://tcp, sim://can");
+                   choice ? urls_of(static_cast<BusKind>(*choice)) : known_urls());
     }
     if (!choice) return by_url;
     const auto kind = static_cast<BusKind>(*choice);

@@ -23,6 +23,10 @@ namespace footlight::config {
 [[nodiscard]] std::optional<BusKind> kind_of_url(std::string_view url);
 /// A real one, for messages: "can://can0".
 [[nodiscard]] std::string example_url(BusKind kind);
+/// The real and the simulated one, for messages.
+[[nodiscard]] std::string urls_of(BusKind kind);
+/// "serial:///dev/..., rtu:///dev/..., ...", for messages.
+[[nodiscard]] std::string known_urls();
 
 /// Simulated buses of three kinds, as many as carry well, with a lamp for every cell that is not blocked and every
 /// wearable of the performers. O(cells)

@@ -16,6 +16,8 @@ using Kind = FoundNode::Kind;
 
 constexpr int kSweeps = 2;  // over all addresses
 constexpr Duration kRetry = milliseconds(1);
+constexpr int kAgain = 3;
+constexpr Duration kSettle = milliseconds(10);
 constexpr Duration kGiveUpDown = milliseconds(1000);
 constexpr Duration kRestart = milliseconds(500);  // a node that has moved may want a moment
 
@@ -24,6 +26,17 @@ std::string hexadecimal(std::uint32_t value) {
   std::string text = "0x";
   for (int shift = 28; shift >= 0; shift -= 4) text += kDigits[(value >> static_cast<unsigned>(shift)) & 0xFU];
   return text;
+}
+
+/// A device that has told less of itself this time is the same device.
+void keep_identity(std::vector<drivers::Identity>& known, const drivers::Identity& identity) {
+  for (drivers::Identity& other : known) {
+    if (other == identity) return;
+    if (!identity.unique_id || other.unique_id != identity.unique_id) continue;
+    if (other.model.empty()) other = identity;
+    return;
+  }
+  known.push_back(identity);
 }
 
 }  // namespace
@@ -199,11 +212,19 @@ void BusService::on_answer(const ServiceAnswer& answer) {
 void BusService::conclude_question() {
   const Question question = *std::exchange(under_way_, std::nullopt);
   NodeHealth& node = health_of(question.address);
-  ++node.asked;
   const auto count = [&](ServiceAnswer::Kind kind) { return std::ranges::count(answers_, kind, &ServiceAnswer::kind); };
   const auto understood = count(ServiceAnswer::Kind::found) + count(ServiceAnswer::Kind::done);
   const bool garbled = count(ServiceAnswer::Kind::garbled) > 0;
   const bool refused = count(ServiceAnswer::Kind::refused) > 0;
+  if (garbled && understood == 0 && question.task == Task::probe && phase_ != Phase::testing &&
+      question.again < kAgain) {
+    // Perhaps the end of somebody else's answer: it counts when it comes again.
+    questions_.push_front(question);
+    ++questions_.front().again;
+    retry_at_ = now_ + kSettle;
+    return;
+  }
+  ++node.asked;
   node.answered += understood > 0 ? 1 : 0;
   node.garbled += understood == 0 && garbled ? 1 : 0;
   node.refused += refused ? 1 : 0;
@@ -214,11 +235,11 @@ void BusService::conclude_question() {
     ++found.rounds;
     found.heard += understood > 0 ? 1 : 0;
     found.garbled += understood == 0 && garbled ? 1 : 0;
+    // Somebody else of this address may still be answering.
+    if (understood > 0 || garbled) retry_at_ = now_ + kSettle;
     for (const ServiceAnswer& answer : answers_) {
-      if (answer.identity == drivers::Identity{}) continue;
-      if (std::ranges::find(found.identities, answer.identity) == found.identities.end()) {
-        found.identities.push_back(answer.identity);
-      }
+      if (answer.kind != ServiceAnswer::Kind::found || answer.identity == drivers::Identity{}) continue;
+      keep_identity(found.identities, answer.identity);
     }
     return;
   }
@@ -292,7 +313,7 @@ void BusService::conclude_scan() {
     }
     if (found.identities.size() > 1 || (2 * found.garbled >= found.rounds && found.garbled > 1)) {
       found.kind = Kind::twofold;
-    } else if (2 * found.heard > found.rounds) {
+    } else if (found.heard > 1) {  // nothing but a device says the same thing twice
       found.kind = Kind::present;
     } else {
       found.kind = Kind::ghost;

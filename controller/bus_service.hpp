@@ -72,7 +72,8 @@ class BusService final : private drivers::EventSink {
     unsigned round = 0;
     bool on = false;
     std::uint16_t to = 0;
-    std::optional<std::uint32_t> unique_id;
+    std::optional<std::uint32_t> unique_id{};
+    int again = 0;  ///< times that its answer was garbled
   };
   enum class Phase { idle, sweep, rounds, asking, testing, before_move, move, after_move };
 

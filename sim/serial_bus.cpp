@@ -32,7 +32,7 @@ SerialBus::SerialBus(const Bus& bus, const Surroundings& surroundings)
       sent_until_(around_.world.now()) {}
 
 std::size_t SerialBus::add(std::unique_ptr<SimulatedNode> node) {
-  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), node->model());
+  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), node->model(), node->unique_id());
   answers_.emplace_back();
   missed_.push_back(false);
   nodes_.push_back(std::move(node));
@@ -98,8 +98,10 @@ void SerialBus::node_hears(std::size_t slot, std::span<const std::uint8_t> bytes
   if (answer.empty()) return;
   const Duration turnaround =
       kShortestTurnaround + around_.timing.up_to(kLongestTurnaround - kShortestTurnaround) + around_.faults.lateness();
+  const Duration slot_time = line_.time_of(SerialMarker::kSlotCharacters) + kLongestTurnaround;
+  const Duration later = markers_[slot].answer_slot() * slot_time;
   answers_[slot].bytes = std::move(answer);
-  around_.world.schedule(around_.world.now() + turnaround, *this, token(0, slot, ++answers_[slot].generation));
+  around_.world.schedule(around_.world.now() + later + turnaround, *this, token(0, slot, ++answers_[slot].generation));
 }
 
 void SerialBus::act(std::uint64_t token_of_event) {

@@ -2,6 +2,7 @@
 #include "sim/markers/node_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.hpp"
 #include "sim/markers/check_sums.hpp"
@@ -29,6 +30,9 @@ void NodeModel::power_on(Instant now) {
   powered_on_at_ = now;
   renewed_ = now;
   identify_until_ = now;
+  content_.fill({});
+  pending_content_.fill({});
+  times_set_ = 0;
   table_.fill(Look{{255, 255, 255}, Effect::steady, 255});
   table_[kDark] = Look{{0, 0, 0}, Effect::steady, 0};
   table_[kNoGuidance] = no_guidance_look();
@@ -74,7 +78,44 @@ void NodeModel::take(std::uint8_t sequence, Instant now) {
   pending_sequence_ = 0;
   staged_ = false;
   if (state_ != NodeState::hold) state_ = NodeState::showing;
+  for (std::size_t c = 0; c < content_.size(); ++c) {
+    if (pending_content_[c].sequence != sequence) continue;
+    content_[c] = pending_content_[c].content;
+    pending_content_[c].sequence = 0;
+  }
   ++latches_;
+}
+
+void NodeModel::set_content(std::uint8_t sequence, int channel, const NodeContent& content) {
+  FL_CHECK(channel >= 0 && channel < channels_);
+  const auto c = static_cast<std::size_t>(channel);
+  if (sequence == shown_sequence_) {
+    content_[c] = content;
+  } else {
+    pending_content_[c] = {sequence, content};
+  }
+}
+
+void NodeModel::set_time(Instant now, Duration show_time, double rate) {
+  time_set_at_ = now;
+  time_then_ = show_time;
+  rate_ = rate;
+  ++times_set_;
+}
+
+std::optional<Duration> NodeModel::show_time(Instant now) const {
+  if (times_set_ == 0) return std::nullopt;
+  return time_then_ + Duration(std::llround(static_cast<double>((now - time_set_at_).count()) * rate_));
+}
+
+std::optional<int> NodeModel::counts_left(int channel, Instant now) const {
+  const NodeContent& content = this->content(channel);
+  const auto time = show_time(now);
+  if (!content.walks || content.count_ms == 0 || !time) return std::nullopt;
+  const auto ms = static_cast<std::uint32_t>(*time / milliseconds(1));
+  const auto left = static_cast<std::int32_t>(content.starts_ms - ms);  // modulo 2^32
+  if (left <= 0) return 0;
+  return (left + content.count_ms - 1) / content.count_ms;
 }
 
 void NodeModel::heartbeat(Instant now) {

@@ -28,6 +28,17 @@ struct NodeHealth {
   int temperature_c = 21;
 };
 
+/// What a wearable tells besides its look (docs/wire-protocol.md, section 2, CONTENT).
+struct NodeContent {
+  bool walks = false;
+  std::uint8_t direction = 0;
+  std::uint16_t distance_cm = 0;
+  std::uint32_t starts_ms = 0;
+  std::uint16_t count_ms = 0;
+
+  friend bool operator==(const NodeContent&, const NodeContent&) = default;
+};
+
 /// The inside of a marker node, the same on every bus: looks pending and shown, sequence, lease, look table. Has no
 /// clock; `now` never goes back from call to call.
 class NodeModel {
@@ -74,6 +85,17 @@ class NodeModel {
   [[nodiscard]] std::uint8_t pending_sequence() const { return pending_sequence_; }
   [[nodiscard]] NodeState state() const { return state_; }
   [[nodiscard]] std::uint16_t boots() const { return boots_; }
+  /// Content of a channel from latch `sequence` on; at once where that latch is shown already.
+  void set_content(std::uint8_t sequence, int channel, const NodeContent& content);
+  [[nodiscard]] const NodeContent& content(int channel) const { return content_[static_cast<std::size_t>(channel)]; }
+  /// Whole counts until the walk begins, as a wearable counts them down; nothing without a walk or a time.
+  [[nodiscard]] std::optional<int> counts_left(int channel, Instant now) const;
+
+  /// Show time at `now`, and its rate by the clock.
+  void set_time(Instant now, Duration show_time, double rate);
+  [[nodiscard]] std::optional<Duration> show_time(Instant now) const;
+  [[nodiscard]] std::uint8_t times_set() const { return times_set_; }
+
   NodeHealth health;
   [[nodiscard]] Instant powered_on_at() const { return powered_on_at_; }
   /// CRC-16 over the looks shown.
@@ -100,6 +122,16 @@ class NodeModel {
   Instant renewed_ = kStart;
   Instant identify_until_ = kStart;
   std::array<Look, 256> table_;
+  struct PendingContent {
+    std::uint8_t sequence = 0;
+    NodeContent content;
+  };
+  std::array<NodeContent, kChannelsPerNode> content_{};
+  std::array<PendingContent, kChannelsPerNode> pending_content_{};
+  Instant time_set_at_ = kStart;
+  Duration time_then_{};
+  double rate_ = 0;
+  std::uint8_t times_set_ = 0;
 };
 
 }  // namespace footlight::sim

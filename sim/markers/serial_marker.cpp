@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/markers/serial_marker.hpp"
 
+#include <array>
 #include <initializer_list>
 #include <optional>
 
@@ -14,7 +15,23 @@ constexpr std::uint8_t kFromNode = 0x81;
 constexpr std::size_t kHeader = 5;
 constexpr std::size_t kCheckSum = 4;
 
-enum Command : std::uint8_t { kPreload = 1, kLatch = 2, kHeartbeat = 3, kStatus = 4, kLook = 5, kIdentify = 6 };
+enum Command : std::uint8_t {
+  kPreload = 1,
+  kLatch = 2,
+  kHeartbeat = 3,
+  kStatus = 4,
+  kLook = 5,
+  kIdentify = 6,
+  kTime = 7,
+  kClock = 8,
+  kContent = 9,
+  kWho = 10,
+  kAddress = 11,
+  kHealth = 12
+};
+
+constexpr std::uint8_t kFirmware = 1;
+constexpr double kFullRate = 32'768;
 
 std::uint8_t byte_of(std::uint32_t word, unsigned index) { return static_cast<std::uint8_t>(word >> (8U * index)); }
 
@@ -101,6 +118,7 @@ std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> paylo
   const std::uint8_t plan = payload[3];
   const std::uint8_t sequence = payload[4];
   const auto body = payload.subspan(kHeader);
+  answer_slot_ = 0;
   std::vector<std::uint8_t> answer;
   switch (payload[1]) {
     case kPreload:
@@ -129,11 +147,87 @@ std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> paylo
       model_.identify(body[0] != 0, now);
       answer = status(plan);
       break;
+    case kTime:
+      if (body.size() != 7) return drop();
+      model_.set_time(now, microseconds(static_cast<std::int64_t>(word_at(body) | (std::uint64_t{body[4]} << 32U))),
+                      (body[5] | (body[6] << 8U)) / kFullRate);
+      break;
+    case kClock:
+      if (!body.empty()) return drop();
+      answer = clock(plan, now);
+      break;
+    case kContent:
+      if (body.size() != 11) return drop();
+      answer = content(payload);
+      break;
+    case kWho:
+      if (body.size() != 1) return drop();
+      answer = who(plan, body[0]);
+      break;
+    case kAddress:
+      if (body.size() != 6) return drop();
+      answer = take_address(payload);
+      break;
+    case kHealth:
+      if (!body.empty()) return drop();
+      answer = health(plan, now);
+      break;
     default:
       break;
   }
   if (to_all) answer.clear();
   return answer;
+}
+
+std::vector<std::uint8_t> SerialMarker::content(std::span<const std::uint8_t> payload) {
+  const auto body = payload.subspan(kHeader);
+  const std::uint8_t sequence = payload[4];
+  if (body[0] >= model_.channels() || sequence == 0 || sequence > kHighestSequence) return {};
+  const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(body[at] | (body[at + 1] << 8U)); };
+  model_.set_content(sequence, body[0], {(body[1] & 1U) != 0, body[2], word(3), word_at(body.subspan(5)), word(9)});
+  const std::uint16_t check = crc16_ccitt(body);
+  return frame_of({kFromNode, kContent, address_, payload[3], sequence, body[0], byte_of(check, 0), byte_of(check, 1)});
+}
+
+std::vector<std::uint8_t> SerialMarker::clock(std::uint8_t plan_byte, Instant now) const {
+  const auto time = model_.show_time(now);
+  const auto us = static_cast<std::uint64_t>(time.value_or(Duration{}) / microseconds(1));
+  std::vector<std::uint8_t> payload{kFromNode, kClock, address_, plan_byte, 0};
+  for (unsigned i = 0; i < 5; ++i) payload.push_back(static_cast<std::uint8_t>(us >> (8U * i)));
+  payload.push_back(time ? 1 : 0);
+  payload.push_back(model_.times_set());
+  return frame_of(std::move(payload));
+}
+
+std::vector<std::uint8_t> SerialMarker::i_am(std::uint8_t command, std::uint8_t plan_byte) const {
+  return frame_of({kFromNode, command, address_, plan_byte, 0, byte_of(unique_id_, 0), byte_of(unique_id_, 1),
+                   byte_of(unique_id_, 2), byte_of(unique_id_, 3), kFirmware,
+                   static_cast<std::uint8_t>(model_.channels())});
+}
+
+std::vector<std::uint8_t> SerialMarker::who(std::uint8_t plan_byte, std::uint8_t round) {
+  const std::array<std::uint8_t, 5> seed{byte_of(unique_id_, 0), byte_of(unique_id_, 1), byte_of(unique_id_, 2),
+                                         byte_of(unique_id_, 3), round};
+  answer_slot_ = crc16_ccitt(seed) % kSlots;
+  return i_am(kWho, plan_byte);
+}
+
+std::vector<std::uint8_t> SerialMarker::take_address(std::span<const std::uint8_t> payload) {
+  const auto body = payload.subspan(kHeader);
+  if (word_at(body) != unique_id_ || body[4] == 0 || body[4] == 255 || body[5] != (body[4] ^ 0x5A)) return {};
+  auto answer = i_am(kAddress, payload[3]);
+  address_ = body[4];
+  return answer;
+}
+
+std::vector<std::uint8_t> SerialMarker::health(std::uint8_t plan_byte, Instant now) const {
+  const auto& health = model_.health;
+  const auto uptime = static_cast<std::uint32_t>(
+      std::chrono::duration_cast<std::chrono::seconds>(now - model_.powered_on_at()).count());
+  const auto supply = static_cast<std::uint32_t>(health.supply_mv);
+  return frame_of({kFromNode, kHealth, address_, plan_byte, 0, static_cast<std::uint8_t>(health.battery_percent),
+                   byte_of(supply, 0), byte_of(supply, 1), static_cast<std::uint8_t>(health.temperature_c + 100),
+                   byte_of(uptime, 0), byte_of(uptime, 1), byte_of(uptime, 2), byte_of(uptime, 3)});
 }
 
 std::vector<std::uint8_t> SerialMarker::preload(std::span<const std::uint8_t> payload) {

@@ -14,8 +14,17 @@ namespace footlight::sim {
 /// A marker node that speaks Footlight serial (docs/wire-protocol.md, section 2). Takes any bytes in any pieces.
 class SerialMarker {
  public:
+  /// Answers to WHO come in one of so many slots.
+  static constexpr int kSlots = 8;
+  static constexpr std::size_t kSlotCharacters = 30;
+
   /// @param address 1..254  @param model borrowed
-  SerialMarker(std::uint8_t address, NodeModel& model) : address_(address), model_(model) {}
+  SerialMarker(std::uint8_t address, NodeModel& model, std::uint32_t unique_id = 0)
+      : address_(address), unique_id_(unique_id), model_(model) {}
+
+  [[nodiscard]] std::uint8_t address() const { return address_; }
+  /// The slot of the last answer: 0, but for those to WHO. A slot is kSlotCharacters and 2 ms long.
+  [[nodiscard]] int answer_slot() const { return answer_slot_; }
 
   /// Forgets half a frame and its counts; the model is powered on by its owner.
   void power_on();
@@ -32,12 +41,20 @@ class SerialMarker {
   std::vector<std::uint8_t> obey(std::span<const std::uint8_t> payload, Instant now);
   std::vector<std::uint8_t> preload(std::span<const std::uint8_t> payload);
   [[nodiscard]] std::vector<std::uint8_t> status(std::uint8_t plan_byte) const;
+  std::vector<std::uint8_t> content(std::span<const std::uint8_t> payload);
+  [[nodiscard]] std::vector<std::uint8_t> clock(std::uint8_t plan_byte, Instant now) const;
+  std::vector<std::uint8_t> who(std::uint8_t plan_byte, std::uint8_t round);
+  std::vector<std::uint8_t> take_address(std::span<const std::uint8_t> payload);
+  [[nodiscard]] std::vector<std::uint8_t> health(std::uint8_t plan_byte, Instant now) const;
+  [[nodiscard]] std::vector<std::uint8_t> i_am(std::uint8_t command, std::uint8_t plan_byte) const;
   std::vector<std::uint8_t> drop() {
     ++dropped_;
     return {};
   }
 
   std::uint8_t address_;
+  std::uint32_t unique_id_;
+  int answer_slot_ = 0;
   NodeModel& model_;
   std::array<std::uint8_t, kLongestEncoded> heard_{};
   std::size_t heard_size_ = 0;

@@ -51,7 +51,50 @@ TEST(SerialGolden, EveryFrameOfTheControllerIsAsDocumented) {
   EXPECT_EQ(wire(driver.heartbeat(kShowTime, now)), golden.bytes("heartbeat"));
   EXPECT_EQ(wire(driver.ask(kSeven, now)), golden.bytes("ask"));
   EXPECT_EQ(wire(driver.upload_look(5, kGrass, now)), golden.bytes("look"));
-  EXPECT_EQ(encode(footlight_serial::identify(7, kPlanByte, true)), golden.bytes("identify"));
+  EXPECT_EQ(wire(driver.identify(7, true, now)), golden.bytes("identify"));
+  EXPECT_EQ(wire(driver.send_content(kSeven, 3, 17, {true, 64, 250, 3'662'000, 500}, now)), golden.bytes("content"));
+  EXPECT_EQ(wire(driver.sync_time(microseconds(3'661'234'567) - driver.sync_time_time(), 1, now)),
+            golden.bytes("time"));
+  EXPECT_EQ(wire(driver.probe(7, 0, now)), golden.bytes("ask"));
+  EXPECT_EQ(wire(driver.probe(7, 1, now)), golden.bytes("who"));
+  EXPECT_EQ(wire(driver.set_address(7, 0x12345678, 9, now)), golden.bytes("address"));
+  EXPECT_EQ(wire(driver.ask_health(7, now)), golden.bytes("ask-health"));
+}
+
+TEST(SerialGolden, ATechniciansAnswersAreUnderstood) {
+  const Golden golden("serial.txt");
+  RecordingStream port;
+  SerialDriver driver(port, {kSeven}, kPlanByte);
+  EventLog log;
+  Instant now = kStart;
+  const auto hear = [&](SendStatus status, const std::string& answer) {
+    EXPECT_EQ(status, SendStatus::accepted) << answer;
+    port.hear(golden.bytes(answer));
+    driver.step(now, log);
+    now += milliseconds(100);
+    driver.step(now, log);
+    EXPECT_TRUE(driver.ready());
+    return log.answers.empty() ? ServiceAnswer{} : log.answers.back();
+  };
+  const Identity seven{0x12345678, "footlight-serial", 1, 32};
+  EXPECT_EQ(hear(driver.probe(7, 0, now), "status").kind, ServiceAnswer::Kind::found);
+  const ServiceAnswer who = hear(driver.probe(7, 1, now), "i-am");
+  EXPECT_EQ(who.kind, ServiceAnswer::Kind::found);
+  EXPECT_EQ(who.identity, seven);
+  EXPECT_EQ(hear(driver.identify(7, true, now), "status").kind, ServiceAnswer::Kind::done);
+  EXPECT_EQ(hear(driver.set_address(7, 0x12345678, 9, now), "addressed").identity, seven);
+  const ServiceAnswer health = hear(driver.ask_health(7, now), "health");
+  ASSERT_EQ(health.health.size(), 4U);
+  EXPECT_EQ(health.health[0].value, 87);
+  EXPECT_DOUBLE_EQ(health.health[1].value, 23.456);
+  EXPECT_EQ(health.health[2].value, -4);
+  EXPECT_EQ(health.health[3].value, 100'000);
+  EXPECT_EQ(log.answers.size(), 5U) << "each once";
+  EXPECT_TRUE(log.events.empty());
+  hear(driver.send_content(kSeven, 3, 17, {true, 64, 250, 3'662'000, 500}, now), "receipt-content");
+  ASSERT_EQ(log.count(Kind::content), 1U);
+  EXPECT_EQ(log.last(Kind::content)->detail, 3);
+  EXPECT_EQ(log.last(Kind::content)->sequence, 17);
 }
 
 TEST(SerialGolden, EveryAnswerOfANodeIsUnderstood) {

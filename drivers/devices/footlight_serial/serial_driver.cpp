@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/check.hpp"
@@ -18,7 +19,8 @@ constexpr Duration kTurnaround = milliseconds(2);  // longest, of a node
 constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, an adapter's latency, a late node
 constexpr Duration kLongestMargin = milliseconds(40);
 constexpr Duration kForgetLate = milliseconds(5000);
-constexpr int kReadsPerStep = 64;  // a flood must not keep us from sending
+constexpr std::size_t kWhoSlotCharacters = 30;  // docs/wire-protocol.md, WHO
+constexpr int kReadsPerStep = 64;               // a flood must not keep us from sending
 
 }  // namespace
 
@@ -77,6 +79,70 @@ SendStatus SerialDriver::upload_look(LookIndex index, const Look& look, Instant 
   return send(footlight_serial::look_entry(plan_byte_, index, look), std::nullopt, 0, now);
 }
 
+Duration SerialDriver::content_time() const {
+  const Frame frame = footlight_serial::content(1, plan_byte_, 1, 0, {});
+  return wire_time(frame) + kTurnaround + port_.wire_time(frame_length(footlight_serial::kContentReceiptBody));
+}
+
+SendStatus SerialDriver::send_content(const NodeAddress& node, int channel, Sequence sequence,
+                                      const WearableContent& content, Instant now) {
+  FL_CHECK(sequence >= 1 && sequence <= kLastSequence && channel >= 0 && channel < node.channels);
+  const Frame frame = footlight_serial::content(node.unit(), plan_byte_, sequence, channel, content);
+  return send(frame, Awaited{node, Command::content, sequence, looks_crc(frame.body), channel},
+              footlight_serial::kContentReceiptBody, now);
+}
+
+Duration SerialDriver::sync_time_time() const { return wire_time(footlight_serial::time(plan_byte_, {}, 1)); }
+
+SendStatus SerialDriver::sync_time(Duration show_time, double rate, Instant now) {
+  // Nodes take the time at the frame's last byte, which leaves so much later.
+  const auto ahead = Duration(std::llround(static_cast<double>(sync_time_time().count()) * rate));
+  return send(footlight_serial::time(plan_byte_, std::max(Duration{}, show_time + ahead), rate), std::nullopt, 0, now);
+}
+
+SendStatus SerialDriver::serve(const Frame& frame, Task task, std::size_t answer_bytes, Instant now) {
+  Awaited awaited;
+  awaited.node.address = frame.address;
+  awaited.command = frame.command;
+  awaited.task = task;
+  awaited.dropped_before = receiver_.dropped();
+  awaited.several = frame.command == Command::who;
+  const SendStatus status = send(frame, awaited, answer_bytes, now);
+  if (status == SendStatus::accepted) receiver_.forget();
+  return status;
+}
+
+SendStatus SerialDriver::probe(std::uint16_t address, unsigned round, Instant now) {
+  const auto unit = static_cast<std::uint8_t>(address);
+  if (round == 0) {
+    return serve(footlight_serial::status_request(unit, plan_byte_), Task::probe, footlight_serial::kStatusBody, now);
+  }
+  const SendStatus status = serve(footlight_serial::who(unit, plan_byte_, static_cast<std::uint8_t>(round)),
+                                  Task::probe, footlight_serial::kWhoBody, now);
+  if (status == SendStatus::accepted) line_free_ += (footlight_serial::kWhoSlots - 1) * who_slot();
+  return status;
+}
+
+Duration SerialDriver::who_slot() const { return port_.wire_time(kWhoSlotCharacters) + kTurnaround; }
+
+SendStatus SerialDriver::identify(std::uint16_t address, bool on, Instant now) {
+  return serve(footlight_serial::identify(static_cast<std::uint8_t>(address), plan_byte_, on), Task::identify,
+               footlight_serial::kStatusBody, now);
+}
+
+SendStatus SerialDriver::set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
+                                     Instant now) {
+  FL_CHECK(unique_id.has_value() && to >= 1 && to <= 254);
+  return serve(footlight_serial::new_address(static_cast<std::uint8_t>(from), plan_byte_, *unique_id,
+                                             static_cast<std::uint8_t>(to)),
+               Task::set_address, footlight_serial::kWhoBody, now);
+}
+
+SendStatus SerialDriver::ask_health(std::uint16_t address, Instant now) {
+  return serve(footlight_serial::health_request(static_cast<std::uint8_t>(address), plan_byte_), Task::health,
+               footlight_serial::kHealthBody, now);
+}
+
 SendStatus SerialDriver::send(const Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                               Instant now) {
   if (awaited_ || now < line_free_) return SendStatus::busy;
@@ -104,10 +170,7 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
     }
     if (count == 0) break;
   }
-  if (awaited_ && now >= line_free_) {
-    events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
-    given_up_ = std::exchange(awaited_, std::nullopt);
-  }
+  if (awaited_ && now >= line_free_) give_up(events);
   if (down_ != down_told_) {
     down_told_ = down_;
     events.on_event({down_ ? DeviceEvent::Kind::bus_down : DeviceEvent::Kind::bus_up, NodeIndex{}});
@@ -115,6 +178,38 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
   line_taken_ = awaited_ || now < line_free_;
   if (reads == kReadsPerStep) return now;
   return line_taken_ ? line_free_ : kNever;
+}
+
+void SerialDriver::give_up(EventSink& events) {
+  if (!awaited_->task) {
+    events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
+    given_up_ = std::exchange(awaited_, std::nullopt);
+    return;
+  }
+  const Awaited awaited = *std::exchange(awaited_, std::nullopt);
+  if (awaited.heard) return;
+  ServiceAnswer answer{*awaited.task, ServiceAnswer::Kind::silent, awaited.node.address, 0, {}, {}};
+  if (receiver_.dropped() != awaited.dropped_before || receiver_.midway()) answer.kind = ServiceAnswer::Kind::garbled;
+  events.on_answer(answer);
+}
+
+bool SerialDriver::tell_service(const Frame& frame, EventSink& events) {
+  ServiceAnswer answer{*awaited_->task, ServiceAnswer::Kind::done, frame.address, 0, {}, {}};
+  if (awaited_->task == Task::probe) answer.kind = ServiceAnswer::Kind::found;
+  if (frame.command == Command::who || frame.command == Command::address) {
+    const auto identity = decode_identity(frame);
+    if (!identity) return false;
+    answer.identity = *identity;
+  } else if (frame.command == Command::health) {
+    auto health = decode_health(frame);
+    if (!health) return false;
+    answer.health = std::move(*health);
+  } else if (!decode_status(frame)) {
+    return false;
+  }
+  awaited_->heard = true;
+  events.on_answer(answer);
+  return !awaited_->several;
 }
 
 void SerialDriver::note_late(const Frame& frame, Instant now) {
@@ -129,8 +224,22 @@ void SerialDriver::note_late(const Frame& frame, Instant now) {
 
 void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
   note_late(frame, now);
-  if (!awaited_ || frame.address != awaited_->node.address || frame.command != awaited_->command) return;
-  if (const auto status = decode_status(frame)) {
+  // Who is asked to show itself answers by its status.
+  const Command wanted = awaited_ && awaited_->command == Command::identify ? Command::status
+                         : awaited_                                         ? awaited_->command
+                                                                            : Command::status;
+  if (!awaited_ || frame.address != awaited_->node.address || frame.command != wanted ||
+      frame.direction != footlight_serial::Direction::from_node) {
+    return;
+  }
+  if (awaited_->task) {
+    if (!tell_service(frame, events)) return;
+  } else if (const auto content = decode_content_receipt(frame)) {
+    if (frame.sequence != awaited_->sequence || content->crc != awaited_->crc) return;
+    DeviceEvent event{DeviceEvent::Kind::content, awaited_->node.node, frame.sequence};
+    event.detail = content->channel;
+    events.on_event(event);
+  } else if (const auto status = decode_status(frame)) {
     tell_status(awaited_->node, *status, frame.sequence, events);
   } else if (const auto crc = decode_receipt(frame)) {
     if (frame.sequence != awaited_->sequence || *crc != awaited_->crc) return;

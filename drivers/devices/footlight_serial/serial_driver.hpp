@@ -23,7 +23,12 @@ class SerialDriver final : public Driver {
   SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte);
 
   [[nodiscard]] std::string_view language() const override { return "footlight-serial"; }
-  [[nodiscard]] Capabilities capabilities() const override { return {}; }
+  [[nodiscard]] Capabilities capabilities() const override {
+    Capabilities can;
+    can.contents = true;
+    can.keeps_time = true;
+    return can;
+  }
   [[nodiscard]] Duration preload_time(int channels) const override;
   [[nodiscard]] Duration status_time() const override;
   [[nodiscard]] Duration latch_time() const override;
@@ -38,6 +43,18 @@ class SerialDriver final : public Driver {
   SendStatus heartbeat(Duration show_time, Instant now) override;
   SendStatus ask(const NodeAddress& node, Instant now) override;
   SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  SendStatus send_content(const NodeAddress& node, int channel, Sequence sequence, const WearableContent& content,
+                          Instant now) override;
+  [[nodiscard]] Duration content_time() const override;
+  SendStatus sync_time(Duration show_time, double rate, Instant now) override;
+  [[nodiscard]] Duration sync_time_time() const override;
+  [[nodiscard]] std::string_view refusal(Task /*task*/) const override { return {}; }
+  /// Round 0 asks for a status, which is quick and tells that somebody is there; later rounds ask who.
+  SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
+  SendStatus identify(std::uint16_t address, bool on, Instant now) override;
+  SendStatus set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
+                         Instant now) override;
+  SendStatus ask_health(std::uint16_t address, Instant now) override;
   Instant step(Instant now, EventSink& events) override;
 
  private:
@@ -47,12 +64,22 @@ class SerialDriver final : public Driver {
     footlight_serial::Command command = footlight_serial::Command::status;
     Sequence sequence = 0;
     std::uint16_t crc = 0;
+    int channel = 0;
+    std::optional<Task> task{};  ///< a technician's: told as an answer
+    bool several = false;        ///< more than one may answer, until the time is over
+    bool heard = false;
+    std::uint32_t dropped_before = 0;
   };
 
   [[nodiscard]] Duration wire_time(const footlight_serial::Frame& frame) const;
   SendStatus send(const footlight_serial::Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                   Instant now);
   void hear(const footlight_serial::Frame& frame, Instant now, EventSink& events);
+  SendStatus serve(const footlight_serial::Frame& frame, Task task, std::size_t answer_bytes, Instant now);
+  /// @return true when the answer was the last one
+  bool tell_service(const footlight_serial::Frame& frame, EventSink& events);
+  void give_up(EventSink& events);
+  [[nodiscard]] Duration who_slot() const;
   void note_late(const footlight_serial::Frame& frame, Instant now);
   void tell_status(const NodeAddress& node, const footlight_serial::NodeStatus& status, Sequence shown,
                    EventSink& events);

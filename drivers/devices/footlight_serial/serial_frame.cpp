@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/devices/footlight_serial/serial_frame.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <zlib.h>
 
 #include "core/check.hpp"
@@ -12,6 +15,7 @@ namespace {
 
 constexpr std::size_t kHeader = 5;
 constexpr std::size_t kCheck = 4;
+constexpr double kFullRate = 32'768;   // show time goes as fast as the clock
 constexpr std::uint8_t kGuard = 0x5A;  // each byte of 0x5A5A5A5A xor sequence * 0x01010101 is this xor the sequence
 
 std::uint32_t crc_32(std::span<const std::uint8_t> bytes) {
@@ -34,7 +38,7 @@ std::optional<Frame> parse(std::span<const std::uint8_t> payload) {
   if (check != crc_32(content)) return std::nullopt;
   const auto direction = static_cast<Direction>(content[0]);
   if (direction != Direction::from_controller && direction != Direction::from_node) return std::nullopt;
-  if (content[1] < 1 || content[1] > 6) return std::nullopt;
+  if (content[1] < 1 || content[1] > static_cast<std::uint8_t>(Command::health)) return std::nullopt;
   return Frame{direction,  static_cast<Command>(content[1]),          content[2], content[3],
                content[4], {content.begin() + kHeader, content.end()}};
 }
@@ -105,6 +109,75 @@ std::optional<std::uint16_t> decode_receipt(const Frame& frame) {
   if (frame.direction != Direction::from_node || frame.command != Command::preload) return std::nullopt;
   if (frame.body.size() != kReceiptBody) return std::nullopt;
   return little_endian(frame.body, 0);
+}
+
+Frame time(std::uint8_t plan_byte, Duration show_time, double rate) {
+  const auto us = static_cast<std::uint64_t>(show_time / microseconds(1));
+  const auto pace = static_cast<std::uint16_t>(std::clamp(std::lround(rate * kFullRate), 0L, 65'535L));
+  Frame frame{Direction::from_controller, Command::time, 0, plan_byte, 0, {}};
+  for (unsigned shift = 0; shift < 40; shift += 8) frame.body.push_back(static_cast<std::uint8_t>(us >> shift));
+  frame.body.push_back(static_cast<std::uint8_t>(pace & 0xFFU));
+  frame.body.push_back(static_cast<std::uint8_t>(pace >> 8U));
+  return frame;
+}
+
+Frame content(std::uint8_t address, std::uint8_t plan_byte, Sequence sequence, int channel,
+              const WearableContent& content) {
+  Frame frame{Direction::from_controller, Command::content, address, plan_byte, sequence, {}};
+  frame.body = {static_cast<std::uint8_t>(channel), static_cast<std::uint8_t>(content.walks ? 1 : 0), content.direction,
+                static_cast<std::uint8_t>(content.distance_cm & 0xFFU),
+                static_cast<std::uint8_t>(content.distance_cm >> 8U)};
+  append_little_endian(frame.body, content.starts_ms);
+  frame.body.push_back(static_cast<std::uint8_t>(content.count_ms & 0xFFU));
+  frame.body.push_back(static_cast<std::uint8_t>(content.count_ms >> 8U));
+  return frame;
+}
+
+Frame who(std::uint8_t address, std::uint8_t plan_byte, std::uint8_t round) {
+  return {Direction::from_controller, Command::who, address, plan_byte, 0, {round}};
+}
+
+Frame new_address(std::uint8_t address, std::uint8_t plan_byte, std::uint32_t unique_id, std::uint8_t to) {
+  Frame frame{Direction::from_controller, Command::address, address, plan_byte, 0, {}};
+  append_little_endian(frame.body, unique_id);
+  frame.body.push_back(to);
+  frame.body.push_back(static_cast<std::uint8_t>(to ^ kGuard));
+  return frame;
+}
+
+Frame health_request(std::uint8_t address, std::uint8_t plan_byte) {
+  return {Direction::from_controller, Command::health, address, plan_byte, 0, {}};
+}
+
+std::optional<ContentReceipt> decode_content_receipt(const Frame& frame) {
+  if (frame.direction != Direction::from_node || frame.command != Command::content) return std::nullopt;
+  if (frame.body.size() != kContentReceiptBody) return std::nullopt;
+  return ContentReceipt{frame.body[0], little_endian(frame.body, 1)};
+}
+
+std::optional<Identity> decode_identity(const Frame& frame) {
+  const bool tells = frame.command == Command::who || frame.command == Command::address;
+  if (frame.direction != Direction::from_node || !tells || frame.body.size() != kWhoBody) return std::nullopt;
+  Identity identity;
+  identity.unique_id = little_endian(frame.body, 0) | (std::uint32_t{little_endian(frame.body, 2)} << 16U);
+  identity.model = "footlight-serial";
+  identity.firmware = frame.body[4];
+  identity.channels = frame.body[5];
+  return identity;
+}
+
+std::optional<std::vector<HealthValue>> decode_health(const Frame& frame) {
+  if (frame.direction != Direction::from_node || frame.command != Command::health) return std::nullopt;
+  if (frame.body.size() != kHealthBody) return std::nullopt;
+  constexpr std::uint8_t kNoBattery = 255;
+  constexpr int kZeroDegrees = 100;
+  std::vector<HealthValue> values;
+  if (frame.body[0] != kNoBattery) values.push_back({"battery", static_cast<double>(frame.body[0]), "%"});
+  values.push_back({"supply", little_endian(frame.body, 1) / 1000.0, "V"});
+  values.push_back({"temperature", static_cast<double>(frame.body[3] - kZeroDegrees), "C"});
+  const std::uint32_t uptime = little_endian(frame.body, 4) | (std::uint32_t{little_endian(frame.body, 6)} << 16U);
+  values.push_back({"uptime", static_cast<double>(uptime), "s"});
+  return values;
 }
 
 std::optional<Frame> FrameReceiver::take(std::uint8_t byte) {

@@ -229,7 +229,10 @@ void ModbusDriver::submit_next(Instant now, EventSink& events) {
   if (status == SendStatus::accepted) {
     jobs_.pop_front();
   } else if (status == SendStatus::down) {
-    for (const Job& job : jobs_) events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+    for (const Job& job : jobs_) {
+      if (job.purpose != Purpose::service) events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+    }
+    service_.reset();
     jobs_.clear();
   }
 }
@@ -237,6 +240,11 @@ void ModbusDriver::submit_next(Instant now, EventSink& events) {
 void ModbusDriver::finish(const Job& job, const ModbusReply& reply, EventSink& events) {
   DeviceEvent event{DeviceEvent::Kind::missed, job.node, job.sequence};
   const bool fits = reply.unit == job.request.unit && reply.function == job.request.function;
+  if (job.purpose == Purpose::service) {
+    ModbusReply service = reply;
+    if (!fits && reply.outcome != ModbusReply::Outcome::timeout) service.outcome = ModbusReply::Outcome::garbled;
+    return finish_service(job, service, events);
+  }
   if (reply.outcome == ModbusReply::Outcome::exception && fits) {
     if (reply.exception_code == kDeviceFailure && !job.retried) {
       jobs_.push_front(job);

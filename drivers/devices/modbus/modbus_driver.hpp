@@ -50,10 +50,16 @@ class ModbusDriver final : public Driver {
   SendStatus heartbeat(Duration show_time, Instant now) override;
   SendStatus ask(const NodeAddress& node, Instant now) override;
   SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  [[nodiscard]] std::string_view refusal(Task task) const override;
+  SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
+  SendStatus identify(std::uint16_t address, bool on, Instant now) override;
+  SendStatus set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
+                         Instant now) override;
+  SendStatus ask_health(std::uint16_t address, Instant now) override;
   Instant step(Instant now, EventSink& events) override;
 
  private:
-  enum class Purpose { preload, latch, late_write, heartbeat, status, looks, look };
+  enum class Purpose { preload, latch, late_write, heartbeat, status, looks, look, service };
   struct Job {
     Purpose purpose = Purpose::status;
     NodeIndex node;  ///< of a request to one unit
@@ -82,6 +88,9 @@ class ModbusDriver final : public Driver {
   static void append(std::vector<Job>& jobs, Purpose purpose, NodeIndex node, Sequence sequence,
                      modbus::Requests requests);
   void drop_rest_of(const Job& job);
+  SendStatus serve(Task task, std::uint16_t address, modbus::Requests requests, Instant now);
+  void finish_service(const Job& job, const ModbusReply& reply, EventSink& events);
+  void take_service(const Job& job, const ModbusReply& reply);
   SendStatus run(std::vector<Job> jobs, Instant now);
   SendStatus submit(const Job& job, Instant now);
   void submit_next(Instant now, EventSink& events);
@@ -100,6 +109,7 @@ class ModbusDriver final : public Driver {
   std::map<NodeIndex, Written> written_;                     ///< latched: what a reading should give
   std::array<Look, 256> looks_;                              ///< as uploaded
   std::vector<DeviceEvent> due_;                             ///< told by the next step
+  std::optional<ServiceAnswer> service_;                     ///< a technician's request under way
   std::optional<Job> under_way_;
   std::deque<Job> jobs_;  ///< late writes, a second try
   bool paused_ = false;   ///< the device wants time after a write

@@ -16,7 +16,7 @@ std::uint16_t high_word(std::uint32_t value) { return static_cast<std::uint16_t>
 std::string text_of(const std::vector<std::uint16_t>& registers) {
   std::string text;
   for (const std::uint16_t word : registers) {
-    for (const unsigned byte : {word >> 8U, word & 0xFFU}) {
+    for (const int byte : {word >> 8, word & 0xFF}) {
       if (byte == 0) return text;
       text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '?';
     }
@@ -142,6 +142,10 @@ void ModbusDriver::finish_service(const Job& job, const ModbusReply& reply, Even
   if (reply.outcome == ModbusReply::Outcome::exception) {
     if (!probing) service_->kind = Kind::refused;
     service_->detail = reply.exception_code;
+  } else if (reply.outcome != ModbusReply::Outcome::ok && probing && service_->identity.unique_id) {
+    drop_rest_of(job);  // it has said who it is
+    events.on_answer(*std::exchange(service_, std::nullopt));
+    return;
   } else if (reply.outcome != ModbusReply::Outcome::ok) {
     service_->kind = reply.outcome == ModbusReply::Outcome::timeout ? Kind::silent : Kind::garbled;
   } else {

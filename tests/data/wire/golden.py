@@ -82,6 +82,7 @@ def status(shown, pending, looks, state, boots, dropped):
 
 
 SHOWN, STATUS = status(17, 0, LOOKS_32, 1, 0x0102, 3)
+CONTENT = struct.pack("<BBBHIH", 3, 1, 64, 250, 3_662_000, 500)
 GUARD = struct.pack("<I", 0x5A5A5A5A ^ (17 * 0x01010101))
 write("serial.txt", ["Plan byte 0xA3; node 7 has 32 channels, node 9 has 5; looks 7 i mod 256, and 1 0 0 255 9."], [
     ("PRELOAD of 32 looks, first channel 0, sequence 17", "preload-32", hexed(serial(1, 1, 7, 17, [0] + LOOKS_32))),
@@ -91,6 +92,17 @@ write("serial.txt", ["Plan byte 0xA3; node 7 has 32 channels, node 9 has 5; look
     ("STATUS asked of node 7", "ask", hexed(serial(1, 4, 7, 0))),
     ("LOOK 5: #7CFC00, brightness 200, blink", "look", hexed(serial(1, 5, 0, 0, [5, 0x7C, 0xFC, 0x00, 200, 1]))),
     ("IDENTIFY node 7, on", "identify", hexed(serial(1, 6, 7, 0, [1]))),
+    ("TIME: 3,661,234,567 us of show time, as fast as the clock", "time", hexed(serial(1, 7, 0, 0, struct.pack("<Q", 3_661_234_567)[:5] + struct.pack("<H", 32768)))),
+    ("CLOCK asked of node 7", "clock", hexed(serial(1, 8, 7, 0))),
+    ("CONTENT of node 7, channel 3, for latch 17: walks, direction 64, 250 cm, at 3,662,000 ms, counts of 500 ms", "content", hexed(serial(1, 9, 7, 17, CONTENT))),
+    ("WHO asked of node 7, round 1", "who", hexed(serial(1, 10, 7, 0, [1]))),
+    ("ADDRESS: node 7 of unique id 0x12345678 gets address 9", "address", hexed(serial(1, 11, 7, 0, struct.pack("<IBB", 0x12345678, 9, 9 ^ 0x5A)))),
+    ("HEALTH asked of node 7", "ask-health", hexed(serial(1, 12, 7, 0))),
+    ("Answer: receipt of content", "receipt-content", hexed(serial(0x81, 9, 7, 17, struct.pack("<BH", 3, crc16_ccitt(CONTENT))))),
+    ("Answer: node 7 has unique id 0x12345678, firmware 1, 32 channels", "i-am", hexed(serial(0x81, 10, 7, 0, struct.pack("<IBB", 0x12345678, 1, 32)))),
+    ("Answer: the same after ADDRESS", "addressed", hexed(serial(0x81, 11, 7, 0, struct.pack("<IBB", 0x12345678, 1, 32)))),
+    ("Answer: HEALTH of node 7: battery 87 %, 23,456 mV, -4 degrees, up for 100,000 s", "health", hexed(serial(0x81, 12, 7, 0, struct.pack("<BHBI", 87, 23456, 96, 100000)))),
+    ("Answer: CLOCK of node 7: 3,661,234,999 us, set, 5 TIME frames", "clock-answer", hexed(serial(0x81, 8, 7, 0, struct.pack("<Q", 3_661_234_999)[:5] + bytes([1, 5])))),
     ("Answer: RECEIPT of preload-32", "receipt-32", hexed(serial(0x81, 1, 7, 17, struct.pack("<H", crc16_ccitt(bytes(LOOKS_32)))))),
     ("Answer: RECEIPT of preload-5", "receipt-5", hexed(serial(0x81, 1, 9, 240, struct.pack("<H", crc16_ccitt(bytes(LOOKS_5)))))),
     ("Answer: STATUS of node 7: shows sequence 17 and the 32 looks, state 1, boots 0x0102, 3 dropped", "status", hexed(serial(0x81, 4, 7, SHOWN, STATUS))),

@@ -147,5 +147,89 @@ TEST(SerialMarkerProperty, NoBytesBreakItAndOnlyWholeFramesAreAnswered) {
   }));
 }
 
+TEST_F(SerialMarkerTest, ContentWaitsForItsLatch) {
+  const Octets walk{0x01, 9, 7, 0xA3, 17, 3, 1, 64, 250, 0, 0x70, 0xE0, 0x37, 0, 0xF4, 0x01};
+  NodeModel wide(4, true);
+  SerialMarker wearable(7, wide);
+  wide.power_on(kStart);
+  const auto hear = [&](const Octets& payload) { return wearable.receive(serial_frame(payload), kStart); };
+  ASSERT_FALSE(hear(walk).empty());
+  EXPECT_FALSE(wide.content(3).walks);
+  hear({0x01, 1, 7, 0xA3, 17, 0, 5});
+  hear({0x01, 2, 0, 0xA3, 17, 0x4B, 0x4B, 0x4B, 0x4B});
+  EXPECT_EQ(wide.content(3), (NodeContent{true, 64, 250, 3'661'936, 500}));
+  EXPECT_TRUE(hear({0x01, 9, 7, 0xA3, 17, 4, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}).empty()) << "it has no channel 4";
+  Octets nothing = walk;
+  nothing[6] = 0;
+  ASSERT_FALSE(hear(nothing).empty());
+  EXPECT_FALSE(wide.content(3).walks) << "at once: latch 17 is shown";
+}
+
+TEST_F(SerialMarkerTest, AWearableCountsDownByTheShowsTime) {
+  NodeModel wide(1, true);
+  SerialMarker wearable(7, wide);
+  wide.power_on(kStart);
+  wide.set_content(0, 0, {true, 0, 100, 10'000, 500});
+  EXPECT_EQ(wide.counts_left(0, kStart), std::nullopt) << "it has no time yet";
+  // 8,500 ms of show time, at full rate.
+  wearable.receive(serial_frame({0x01, 7, 0, 0xA3, 0, 0x20, 0xB3, 0x81, 0, 0, 0x00, 0x80}), kStart);
+  EXPECT_EQ(wide.show_time(kStart), milliseconds(8500));
+  EXPECT_EQ(wide.counts_left(0, kStart), 3);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(499)), 3);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(500)), 2);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(1499)), 1);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(1500)), 0);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(5000)), 0);
+  wearable.receive(serial_frame({0x01, 7, 0, 0xA3, 0, 0x20, 0xB3, 0x81, 0, 0, 0x00, 0x00}), kStart);
+  EXPECT_EQ(wide.counts_left(0, kStart + milliseconds(5000)), 3) << "time stands";
+  const auto clock = serial_payload(wearable.receive(serial_frame({0x01, 8, 7, 0, 0}), kStart));
+  ASSERT_TRUE(clock);
+  EXPECT_EQ(*clock, (Octets{0x81, 8, 7, 0, 0, 0x20, 0xB3, 0x81, 0, 0, 1, 2}));
+}
+
+TEST_F(SerialMarkerTest, AnswersWhoInASlotOfItsOwn) {
+  SerialMarker one(7, model, 0x12345678);
+  SerialMarker other(7, model, 0x12345679);
+  int apart = 0;
+  for (std::uint8_t round = 1; round <= 16; ++round) {
+    const auto answer = serial_payload(one.receive(serial_frame({0x01, 10, 7, 0xA3, 0, round}), now));
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(*answer,
+              (Octets{0x81, 10, 7, 0xA3, 0, 0x78, 0x56, 0x34, 0x12, 1, static_cast<std::uint8_t>(model.channels())}));
+    other.receive(serial_frame({0x01, 10, 7, 0xA3, 0, round}), now);
+    ASSERT_LT(one.answer_slot(), SerialMarker::kSlots);
+    apart += one.answer_slot() != other.answer_slot() ? 1 : 0;
+  }
+  EXPECT_GE(apart, 10);
+  one.receive(serial_frame({0x01, 4, 7, 0xA3, 0}), now);
+  EXPECT_EQ(one.answer_slot(), 0) << "other answers come at once";
+}
+
+TEST_F(SerialMarkerTest, TakesAnAddressOnlyUnderItsOwnIdAndWithItsGuard) {
+  SerialMarker one(7, model, 0x12345678);
+  const auto move = [&](int id, int to, int guard) {
+    return one.receive(serial_frame({0x01, 11, 7, 0xA3, 0, static_cast<std::uint8_t>(id), 0x56, 0x34, 0x12,
+                                     static_cast<std::uint8_t>(to), static_cast<std::uint8_t>(guard)}),
+                       now);
+  };
+  EXPECT_TRUE(move(0x79, 9, 9 ^ 0x5A).empty());
+  EXPECT_TRUE(move(0x78, 9, 9).empty());
+  EXPECT_TRUE(move(0x78, 0, 0x5A).empty());
+  EXPECT_TRUE(move(0x78, 255, 255 ^ 0x5A).empty());
+  EXPECT_EQ(one.address(), 7);
+  const auto answer = serial_payload(move(0x78, 9, 9 ^ 0x5A));
+  ASSERT_TRUE(answer);
+  EXPECT_EQ((*answer)[2], 7) << "from the old address";
+  EXPECT_EQ(one.address(), 9);
+}
+
+TEST_F(SerialMarkerTest, TellsItsHealth) {
+  model.health = {87, 23'456, -4};
+  const auto health = serial_payload(marker.receive(serial_frame({0x01, 12, 7, 0xA3, 0}), now + seconds(100)));
+  ASSERT_TRUE(health);
+  EXPECT_EQ((Octets{health->begin() + 5, health->begin() + 9}), (Octets{87, 0xA0, 0x5B, 96}));
+  EXPECT_EQ((*health)[9], 100);
+}
+
 }  // namespace
 }  // namespace footlight::sim
