@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/plan_step.hpp"
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <utility>
 
@@ -16,6 +19,10 @@
 
 namespace footlight::app {
 namespace {
+
+/// How often it is looked whether planning shall stop, and how long its next step is waited for then.
+constexpr std::chrono::milliseconds kLook{20};
+constexpr std::chrono::milliseconds kPatience{60};
 
 Error interrupted() { return {ErrorKind::interrupted, "interrupted; nothing was written"}; }
 
@@ -98,12 +105,24 @@ class Kept {
 
 /// What was planned anew, where something was kept.
 std::string anew_text(const planner::Planned& planned) {
-  const auto of = [](const planner::Planned::Anew& stage, const char* what) {
+  const auto of = [](const planner::StageCount& stage, const char* what) {
     return fmt::format("{} of {} {}", stage.anew, stage.all, what);
   };
   return fmt::format("re-planned {} ({}, {}, {})", of(planned.facts, "transitions"),
                      of(planned.formations, "sections' formations"), of(planned.pairings, "pairings"),
                      of(planned.walks, "walks"));
+}
+
+/// Plans in a thread of its own, which looks at the flag between steps only: a long one is not waited for. Planning
+/// reads and writes nothing but memory, so that the program can end in the midst of it.
+Result<planner::Planned> plan_until_stopped(Session& session, const std::function<Result<planner::Planned>()>& plan) {
+  auto planned = std::async(std::launch::async, plan);
+  while (planned.wait_for(kLook) != std::future_status::ready) {
+    if (!session.stopped()) continue;
+    if (planned.wait_for(kPatience) == std::future_status::ready) break;
+    session.end_now(interrupted());
+  }
+  return planned.get();
 }
 
 /// Decodes what is needed, and plans.
@@ -121,7 +140,8 @@ Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, c
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(choice.threads));
   }
   const SteadyClock clock;
-  auto planned = planner::plan_show(out.loaded.show, *out.films, session.progress(), kept.reuse());
+  auto planned = plan_until_stopped(
+      session, [&] { return planner::plan_show(out.loaded.show, *out.films, session.progress(), kept.reuse()); });
   out.planning = clock.now().time_since_epoch();
   session.clear_line();
   if (!planned) return std::move(planned).error();

@@ -77,6 +77,7 @@ std::vector<std::string> row(const Plan& plan, const std::string& name, const st
 }
 
 planner::ShowMeasures walks_of(const Plan& plan) {
+  if (plan.valid) return planner::measure_walks(plan);
   return planner::measure(plan, std::vector<std::optional<Film>>(plan.sections.size()));
 }
 

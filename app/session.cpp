@@ -85,6 +85,12 @@ int Session::fail(const Error& error) {
   return exit_status(error.kind);
 }
 
+void Session::end_now(const Error& error) {
+  const int status = fail(error);
+  std::fflush(nullptr);
+  _exit(status);
+}
+
 planner::Progress Session::progress() {
   planner::Progress out;
   out.report = [this](std::string_view stage, double share) { tell(stage, share); };

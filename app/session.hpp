@@ -42,6 +42,8 @@ class Session {
   void warn(const std::vector<Diagnostic>& warnings);
   /// Says what went wrong. @return the exit status (docs/errors.md)
   int fail(const Error& error);
+  /// The same, and ends the program at once, whatever its threads are doing: nothing may be half written.
+  [[noreturn]] void end_now(const Error& error);
 
   /// How far long work is: one line that is overwritten when stderr is a terminal, a line for each tenth with
   /// --progress, else nothing.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -204,6 +205,46 @@ class Measurer {
 };
 
 }  // namespace
+
+ShowMeasures measure_walks(const Plan& plan) {
+  ShowMeasures out;
+  const Walks walks(plan);
+  if (walks.times().empty()) return out;
+  const auto nearer = [](double distance_m, PerformerIndex a, PerformerIndex b, Instant at, Measures& measures) {
+    if (distance_m >= measures.min_clearance_m) return;
+    measures.min_clearance_m = distance_m;
+    measures.closest_a = a;
+    measures.closest_b = b;
+    measures.closest_at = at;
+  };
+  out.show.min_clearance_m = std::numeric_limits<double>::infinity();
+  add_walks(walks, walks.times().front(), walks.times().back(), out.show);
+  Instant after = walks.times().front();
+  std::size_t next = 0;
+  for (const PlanSection& section : plan.sections) {
+    Measures& measures = out.sections.emplace_back();
+    measures.min_clearance_m = std::numeric_limits<double>::infinity();
+    const Instant until = std::max(after, section.end);
+    add_walks(walks, after, until, measures);
+    bool walked = false;
+    for (; next < plan.transitions.size() && plan.transitions[next].end <= until; ++next) {
+      const TransitionFacts& facts = plan.transitions[next];
+      nearer(facts.clearance_m, facts.closest_a, facts.closest_b, facts.closest_at, measures);
+      walked = true;
+    }
+    if (!walked) {
+      const ClosestApproach standing = closest_approach(plan, until, until);
+      nearer(standing.distance_m, standing.a, standing.b, after, measures);
+    }
+    nearer(measures.min_clearance_m, measures.closest_a, measures.closest_b, measures.closest_at, out.show);
+    after = until;
+  }
+  for (const Formation& formation : plan.formations) {
+    ++out.show.formations;
+    if (formation.section.at() < out.sections.size()) ++out.sections[formation.section.at()].formations;
+  }
+  return out;
+}
 
 ShowMeasures measure(const Plan& plan, const std::vector<std::optional<Film>>& films, const Progress& progress) {
   return Measurer(plan, films, progress).run();

@@ -56,6 +56,10 @@ struct ShowMeasures {
 [[nodiscard]] ShowMeasures measure(const Plan& plan, const std::vector<std::optional<Film>>& films,
                                    const Progress& progress = {});
 
+/// What `measure` says without films of a plan whose transitions have just been proved: their facts are taken at their
+/// word, and nothing is judged again. @param plan valid, as `plan_show` returns it. O(marks)
+[[nodiscard]] ShowMeasures measure_walks(const Plan& plan);
+
 /// Tolerated lag of each transition of a plan, s, at most 2 s, measured anew: a plan from a file may say anything.
 /// @param progress tells the share of transitions as stage "lag"
 /// @return as long as plan.transitions; worthless when stopped. On all cores. Thread: reentrant.

@@ -107,10 +107,10 @@ class ShowPlanner {
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       planned_.shortest.push_back(shortest_duration(limits_, *chain, SectionIndex::of(s), planned_.plan));
     }
-    planned_.formations = {sections_.all, sections_.anew};
-    planned_.pairings = {counts_.pairings.all, counts_.pairings.anew};
-    planned_.walks = {counts_.walks.all, counts_.walks.anew};
-    planned_.facts = {facts_.all, facts_.anew};
+    planned_.formations = sections_;
+    planned_.pairings = counts_.pairings;
+    planned_.walks = counts_.walks;
+    planned_.facts = facts_;
     progress_.tell("validate", 1);
     if (progress_.stopped()) return interrupted();
     return std::move(planned_);

@@ -31,15 +31,10 @@ struct Planned {
     std::string limited_by;
   };
   std::vector<std::optional<Shortest>> shortest;
-  /// How many stages there are of a kind, and how many of them were planned anew.
-  struct Anew {
-    std::size_t all = 0;
-    std::size_t anew = 0;
-  };
-  Anew formations;  ///< of a section, without what is changed by hand
-  Anew pairings;    ///< of two formations
-  Anew walks;       ///< of everybody from instant to instant
-  Anew facts;       ///< of a transition, and its proof
+  StageCount formations;  ///< of a section, without what is changed by hand
+  StageCount pairings;    ///< of two formations
+  StageCount walks;       ///< of everybody from instant to instant
+  StageCount facts;       ///< of a transition, and its proof
 };
 
 /// What an earlier planning leaves for the next. Every stage (the formations of a section, the pairing of a transition,

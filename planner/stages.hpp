@@ -169,17 +169,21 @@ class Stages {
   std::unordered_map<StageKey, Entry, KeyHash> entries_;
 };
 
-/// How much of a kind of stage was planned anew.
+/// How many stages there are of a kind, and how many of them were planned anew.
 struct StageCount {
-  std::atomic<std::size_t> all = 0;
-  std::atomic<std::size_t> anew = 0;
+  std::size_t all = 0;
+  std::size_t anew = 0;
+
+  /// One more, or one more of those that are here already is planned anew. Several threads may count at the same time.
+  void add() { std::atomic_ref(all).fetch_add(1, std::memory_order_relaxed); }
+  void add_anew() { std::atomic_ref(anew).fetch_add(1, std::memory_order_relaxed); }
 };
 
 /// The value of a stage: from `stages` (nothing: always anew), else made and kept there.
 /// @param decode (StageReader&) -> Value  @param encode (const Value&) -> std::string  @param make () -> Value
 template <class Decode, class Encode, class Make>
 auto recall(Stages* stages, const StageKey& key, StageCount* count, Decode decode, Encode encode, Make make) {
-  if (count != nullptr) ++count->all;
+  if (count != nullptr) count->add();
   if (stages != nullptr) {
     if (const auto bytes = stages->find(key)) {
       StageReader reader(*bytes);
@@ -187,7 +191,7 @@ auto recall(Stages* stages, const StageKey& key, StageCount* count, Decode decod
       if (reader.whole()) return value;
     }
   }
-  if (count != nullptr) ++count->anew;
+  if (count != nullptr) count->add_anew();
   auto value = make();
   if (stages != nullptr) stages->keep(key, encode(value));
   return value;

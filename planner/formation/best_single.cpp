@@ -34,7 +34,8 @@ std::optional<SingleFigures> best_of_frames(const Plan& plan, SectionIndex index
   const Grid& grid = plan.stage.grid;
   const StageToFrame& map = section.film->stage_to_frame;
   const double cell_px = grid.cell_area_m2() * std::abs(map[0] * map[4] - map[1] * map[3]);
-  const Ways ways(plan.stage, plan.stage.clearance_m / 2);
+  const double widest_m = plan.radius_m.empty() ? 0 : *std::max_element(plan.radius_m.begin(), plan.radius_m.end());
+  const Ways ways(plan.stage, std::max(plan.stage.clearance_m / 2, widest_m));
   CellFlags usable = ways.standable();
   int waiting = 0;
   for (const CellIndex cell : section.reserve) {

@@ -283,7 +283,10 @@ class ChainBuilder {
       task.snap.wanted = wanted[n];
       task.snap.longest_m = chain_.longest_m[k - 1];
       task.snap.onward_m = instants[n].longest_m;
-      if (k < last) task.snap.onward = wanted[n + 1];
+      if (k < last) {
+        task.snap.onward = wanted[n + 1];
+        task.next_own = instants[n + 1].own;
+      }
       const std::vector<CellIndex> goals =
           chain_.stops[last].exact && k < last ? binding_goals(k, last, reach_m[n]) : std::vector<CellIndex>();
       task.snap.goal = goals;

@@ -50,17 +50,9 @@ class OrderedStep {
     if (task_.over_cells) hash.add(task_.over_cells->most).add(task_.over_cells->step_s);
     if (task_.exact) return hash.key();
     hash.add(task_.snap.onward_m).add(goal_.empty() ? 0.0 : task_.snap.goal_m).list(goal_);
-    for (const std::vector<Wanted>* list : {&wanted_, &onward_}) {
-      std::vector<double> places;
-      places.reserve(3 * list->size());
-      for (const Wanted& one : *list) {
-        places.push_back(one.at.x);
-        places.push_back(one.at.y);
-        places.push_back(one.own ? 1 : 0);
-      }
-      hash.list(places);
-    }
-    return hash.key();
+    // Most want their own cell, which need not be said twice.
+    hash.list(places_on_the_way(wanted_)).list(places_on_the_way(onward_));
+    return hash.list(taken(task_.next_own, order_)).key();
   }
 
   [[nodiscard]] Step run() const {
@@ -115,6 +107,16 @@ class OrderedStep {
   }
 
  private:
+  /// Of those who do not want their own cell: who, and where to.
+  static std::vector<double> places_on_the_way(const std::vector<Wanted>& list) {
+    std::vector<double> places;
+    for (std::size_t n = 0; n < list.size(); ++n) {
+      if (list[n].own) continue;
+      places.insert(places.end(), {static_cast<double>(n), list[n].at.x, list[n].at.y});
+    }
+    return places;
+  }
+
   [[nodiscard]] SnapTask ordered_snap() const {
     SnapTask snap_task = task_.snap;
     snap_task.now = now_;

@@ -18,8 +18,9 @@ struct CellSteps {
 
 /// Everybody from one instant to the next.
 struct StepTask {
-  SnapTask snap;       ///< without `hold` and `slow`; a goal of kNoGoal binds nobody
-  bool exact = false;  ///< everybody goes to `snap.own`
+  SnapTask snap;                             ///< without `hold` and `slow`; a goal of kNoGoal binds nobody
+  bool exact = false;                        ///< everybody goes to `snap.own`
+  std::span<const CellIndex> next_own = {};  ///< where `snap.onward` wants those who want their own cell
   double clearance_m = 0.5;
   std::span<const std::uint32_t> kind = {};  ///< as LegTask::kind
   double walked_s = 0;                       ///< time between the two instants

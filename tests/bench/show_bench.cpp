@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -108,10 +109,77 @@ void plan_whole(benchmark::State& state, const std::string& show, int threads) {
   state.counters["formations"] = static_cast<double>((*planned)->plan.formations.size());
 }
 
+/// The formation of a section of one image with one place moved by hand: from the topmost of its cells to a free one
+/// above it.
+std::optional<Override> moved_by_hand(const Plan& plan, SectionIndex section) {
+  for (const Formation& formation : plan.formations) {
+    if (formation.section != section) continue;
+    const Grid& grid = plan.stage.grid;
+    std::vector<CellIndex> taken = formation.cells;
+    std::sort(taken.begin(), taken.end());
+    const auto is_free = [&](CellIndex cell) {
+      return !std::binary_search(taken.begin(), taken.end(), cell) &&
+             !std::binary_search(plan.stage.reserve.begin(), plan.stage.reserve.end(), cell);
+    };
+    for (auto from = taken.rbegin(); from != taken.rend(); ++from) {
+      if (std::binary_search(plan.stage.reserve.begin(), plan.stage.reserve.end(), *from)) continue;
+      for (const CellIndex to : grid.neighbours(*from)) {
+        if (!is_free(to)) continue;
+        Override change;
+        change.count = formation.count;
+        change.move = {{*from, to, {}}};
+        return change;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// One place of one formation of the ceremony is changed by hand, and the show planned again with what is kept.
+void replan(benchmark::State& state, SectionIndex section, std::size_t most_anew) {
+  auto decoded = decode("ceremony");
+  if (!decoded) return state.SkipWithError("the show cannot be read");
+  planner::Reuse reuse;
+  planner::Stages stages;
+  reuse.stages = &stages;
+  for (const Section& one : decoded->show.sections) reuse.film_ids.push_back(one.name);
+  const auto before = planner::plan_show(decoded->show, decoded->films, {}, reuse);
+  if (!before) return state.SkipWithError("the show cannot be planned");
+  const auto kept = stages.all();
+  std::vector<std::pair<planner::StageKey, std::string>> first;
+  for (const auto& [key, value] : kept) first.emplace_back(key, value);
+  const auto change = moved_by_hand(before->plan, section);
+  if (!change) return state.SkipWithError("no place can be moved");
+  decoded->show.sections[section.at()].overrides = {*change};
+  std::optional<Result<planner::Planned>> planned;
+  for (auto _ : state) {
+    state.PauseTiming();
+    planner::Stages again;
+    for (const auto& [key, value] : first) again.load(key, value);
+    reuse.stages = &again;
+    state.ResumeTiming();
+    planned = planner::plan_show(decoded->show, std::vector<std::optional<Film>>(decoded->films.size()), {}, reuse);
+  }
+  if (!*planned || !(*planned)->plan.valid) return state.SkipWithError("the changed show cannot be planned");
+  state.counters["anew"] = static_cast<double>((*planned)->facts.anew);
+  if ((*planned)->facts.anew > most_anew) state.SkipWithError("more was planned again than depends on the change");
+  state.counters["people"] = static_cast<double>(decoded->show.performers.size());
+}
+
 }  // namespace
 
 void register_shows(const Effort& effort) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  // An image's two transitions, and the one before, whose lateness looks into them; a film's to its end, since what it
+  // gives way at one formation is missing at the next.
+  for (const auto& [name, section, most] : {std::tuple{"image", 4U, std::size_t{4}}, {"film", 2U, std::size_t{40}}}) {
+    benchmark::RegisterBenchmark(
+        job_name("ours", std::string("replan ceremony, ") + name, 0).c_str(),
+        [=, s = section, m = most](benchmark::State& state) { replan(state, SectionIndex(s), m); })
+        ->Iterations(1)
+        ->Repetitions(3)
+        ->MeasureProcessCPUTime();
+  }
   for (const std::string show : {"vine", "ceremony", "stadium"}) {
     if (effort.quick && show == "stadium") continue;
     const int repetitions = (effort.quick && show == "ceremony") || show == "stadium" ? 1 : 3;

@@ -12,9 +12,11 @@ import hashlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import live
@@ -139,6 +141,26 @@ class Shows(Case):
         for plan in together:
             self.assertTrue(plan["valid"])
             self.assertGreater(plan["planning_s"], 0)
+
+    def test_an_interrupted_planning_ends_at_once_and_writes_nothing(self):
+        show = os.path.join(ROOT, "shows/ceremony/show.yaml")
+        for delay_s in (0.05, 0.5, 1.2):
+            running = subprocess.Popen([PROGRAM, "plan", show, "-o", self.path("show.plan"), "--progress"], stdout=subprocess.PIPE,
+                                       stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+            for line in running.stderr:
+                if line.startswith("walks"):
+                    break
+            time.sleep(delay_s)
+            if running.poll() is not None:
+                break  # planned already: a fast machine
+            running.send_signal(signal.SIGINT)
+            # The promise is 0.1 s; a busy machine may take its time, a planning to its end would take longer.
+            out, err = running.communicate(timeout=60)
+            self.assertEqual(running.returncode, 130, err)
+            self.assertEqual(out, "")
+            self.assertTrue(err.endswith("error: interrupted; nothing was written\n"), err)
+            self.assertNotIn("facts", err)
+            self.assertEqual(os.listdir(self.folder), [])
 
     def test_ceremony_is_planned_and_judged_well(self):
         self.assert_judged_well(os.path.join(ROOT, "shows/ceremony/show.yaml"), 3290)

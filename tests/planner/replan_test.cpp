@@ -5,6 +5,7 @@
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "planner/measure.hpp"
 #include "planner/plan_show.hpp"
 #include "planner/validate.hpp"
 #include "tests/planner/small_show.hpp"
@@ -136,6 +137,34 @@ TEST(Replan, AChangeEndsAtTheNextExactFormation) {
   EXPECT_EQ(after->pairings.anew, 1U);
   EXPECT_EQ(after->walks.anew, 1U);
   EXPECT_EQ(after->plan, plan_show(show, three_films())->plan);
+}
+
+TEST(Replan, WhatTheFactsOfAPlanSayIsWhatIsMeasured) {
+  for (const WalkKind walk : {WalkKind::straight, WalkKind::cells}) {
+    Show show = three_sections();
+    show.stage.walk = walk;
+    show.stage.max_speed_mps = 2;
+    // Held before anybody walks: a section without a transition.
+    show.sections[0].hold_counts = 12;
+    const auto planned = plan_show(show, three_films());
+    ASSERT_TRUE(planned);
+    ASSERT_TRUE(planned->plan.valid);
+    const ShowMeasures told = measure_walks(planned->plan);
+    const ShowMeasures found = measure(planned->plan, Films(3));
+    ASSERT_EQ(told.sections.size(), found.sections.size());
+    const auto expect_alike = [&](const Measures& a, const Measures& b) {
+      EXPECT_NEAR(a.min_clearance_m, b.min_clearance_m, 1e-9);
+      EXPECT_EQ(a.too_close, b.too_close);
+      EXPECT_EQ(a.total_distance_m, b.total_distance_m);
+      EXPECT_EQ(a.longest_distance_m, b.longest_distance_m);
+      EXPECT_EQ(a.max_speed_m_s, b.max_speed_m_s);
+      EXPECT_EQ(a.direction_changes, b.direction_changes);
+      EXPECT_EQ(a.arrivals, b.arrivals);
+      EXPECT_EQ(a.formations, b.formations);
+    };
+    expect_alike(told.show, found.show);
+    for (std::size_t s = 0; s < told.sections.size(); ++s) expect_alike(told.sections[s], found.sections[s]);
+  }
 }
 
 TEST(Replan, WhatIsHarmedIsPlannedAnew) {
