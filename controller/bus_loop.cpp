@@ -11,6 +11,8 @@ namespace {
 constexpr Duration kSuspect = milliseconds(1000);  // T1 of the trust model
 constexpr double kPollShare = 0.2;                 // of the bus, for the promise of T1
 constexpr Duration kFirstBackoff = milliseconds(50);
+constexpr Duration kFirstRest = milliseconds(20);  // of a device that is busy
+constexpr Duration kLongestRest = milliseconds(640);
 constexpr Duration kAskAgain = milliseconds(250);
 constexpr Duration kLongestBackoff = milliseconds(1000);
 constexpr Duration kHopeful = milliseconds(2500);  // T2: so long a node that is silent is asked more often
@@ -91,6 +93,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
   consider(down_until_);
   for (const NodeState& node : nodes_) {
     if (node.misses > 0 && !can_.pushes_status) consider(node.ask_at);
+    if (node.rest.count() > 0) consider(node.rests_until);
   }
   if (refused_) consider(now_ + kRetryBusy);
   return earliest;
@@ -201,6 +204,7 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
   switch (event.kind) {
     case Kind::preloaded:
       node->in_flight = false;
+      node->rest = {};
       if (node->offered != kNone && event.sequence == sequence_of(node->offered)) node->pending = node->offered;
       if (!can_.pushes_status) {
         node->misses = 0;
@@ -214,8 +218,10 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
       on_boot(*node);
       break;
     case Kind::missed:
-    case Kind::rejected:
       on_miss(*node);
+      break;
+    case Kind::rejected:
+      on_refusal(*node, event.again);
       break;
     case Kind::content:
     case Kind::bus_down:
@@ -242,6 +248,7 @@ void BusLoop::on_showing(NodeState& node, const drivers::DeviceEvent& event) noe
 
 void BusLoop::on_confirmed(NodeState& node) noexcept {
   node.right = true;
+  node.rest = {};
   if (node.counted) return;
   node.counted = true;
   (can_.readback ? counters_.deliveries : counters_.unverified) += changed_channels(node);
@@ -267,7 +274,26 @@ void BusLoop::on_miss(NodeState& node) noexcept {
     wait_after_miss(node);
     return;
   }
-  if (++node.misses < kMissesToQuarantine) return;
+  if (++node.misses >= kMissesToQuarantine) quarantine(node);
+}
+
+void BusLoop::on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept {
+  using Again = drivers::DeviceEvent::Again;
+  if (again == Again::later && !node.quarantined && node.rest < kLongestRest) {
+    node.in_flight = false;
+    node.rest = std::max(kFirstRest, 2 * node.rest);
+    node.rests_until = now_ + node.rest;
+    return;
+  }
+  if (again == Again::soon) return on_miss(node);
+  ++counters_.misses;
+  node.in_flight = false;
+  if (!node.quarantined) quarantine(node);
+  node.backoff = kLongestBackoff;
+  node.ask_at = now_ + node.backoff;
+}
+
+void BusLoop::quarantine(NodeState& node) noexcept {
   ++counters_.quarantines;
   node.quarantined = true;
   node.right = false;

@@ -95,11 +95,15 @@ class BusLoop final : private drivers::EventSink {
     Instant silent_since;         ///< first of the misses in a row
     Instant ask_at;               ///< not before, after a miss
     Duration backoff{};           ///< in quarantine
+    Instant rests_until;          ///< it has said that it is busy
+    Duration rest{};              ///< the last one; doubled while it goes on
   };
 
   void on_event(const drivers::DeviceEvent& event) override;
   void on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept;
   void on_miss(NodeState& node) noexcept;
+  void on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept;
+  void quarantine(NodeState& node) noexcept;
   void wait_after_miss(NodeState& node) noexcept;
   void on_boot(NodeState& node) noexcept;
   void on_confirmed(NodeState& node) noexcept;
@@ -120,6 +124,7 @@ class BusLoop final : private drivers::EventSink {
   bool repair() noexcept;
   bool preload_next() noexcept;
   bool ask_quarantined(bool hopeful_only) noexcept;
+  [[nodiscard]] bool rests(const NodeState& node) const noexcept { return now_ < node.rests_until; }
   [[nodiscard]] bool hopeful(const NodeState& node) const noexcept;
   bool refresh() noexcept;
 

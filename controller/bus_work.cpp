@@ -118,7 +118,8 @@ bool BusLoop::verify() noexcept {
   if (can_.pushes_status || !fits(time_of(Operation::ask))) return false;
   NodeState* least = nullptr;
   for (NodeState& node : nodes_) {
-    if (node.verify && !node.quarantined && (least == nullptr || node.misses < least->misses)) least = &node;
+    if (node.verify && !node.quarantined && !rests(node) && (least == nullptr || node.misses < least->misses))
+      least = &node;
   }
   return least != nullptr && send_ask(*least);
 }
@@ -133,7 +134,7 @@ bool BusLoop::repair() noexcept {
   bool under_way = false;
   bool ready = false;
   for (NodeState& node : nodes_) {
-    if (node.right || node.verify || node.quarantined) continue;
+    if (node.right || node.verify || node.quarantined || rests(node)) continue;
     under_way = under_way || node.in_flight;
     ready = ready || node.pending == current_;
     if (node.in_flight || node.pending == current_) continue;
@@ -156,7 +157,8 @@ bool BusLoop::repair() noexcept {
 // ---- before the next one
 
 bool BusLoop::wants_preload(const NodeState& node) const noexcept {
-  if (next_ == current_ || node.quarantined || node.in_flight || (node.right && !node.changes)) return false;
+  if (next_ == current_ || node.quarantined || node.in_flight || rests(node) || (node.right && !node.changes))
+    return false;
   if (can_.sequenced_latch) return node.pending != next_;
   return node.offered != next_ || node.offers < passes_;
 }

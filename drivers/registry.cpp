@@ -82,11 +82,11 @@ Result<Port> as_port(Result<PortPointer> opened) {
 }
 
 Result<Port> open_serial_bus(const Bus& bus, const std::string& place, const Nodes& /*nodes*/) {
-  return as_port(open_serial(place, bus.bits_per_second));
+  return as_port(open_serial(place, SerialSettings::of(bus)));
 }
 
 Result<Port> open_rtu_bus(const Bus& bus, const std::string& place, const Nodes& /*nodes*/) {
-  return as_port(open_modbus_rtu(place, bus.bits_per_second));
+  return as_port(open_modbus_rtu(place, SerialSettings::of(bus)));
 }
 
 Result<Port> open_tcp_bus(const Bus& /*bus*/, const std::string& place, const Nodes& nodes) {

@@ -73,6 +73,7 @@ Status<> set(Faults& faults, std::string_view part, std::string_view key, std::s
   if (key == "loss") return set_share(part, value, 0.3, "a share of 0 to 30%, as loss=5%", faults.loss);
   if (key == "corrupt") return set_share(part, value, 0.3, "a share of 0 to 30%, as corrupt=1%", faults.corrupt);
   if (key == "duplicate") return set_share(part, value, 0.5, "a share of 0 to 50%, as duplicate=1%", faults.duplicate);
+  if (key == "late") return set_share(part, value, 1, "a share of 0 to 100%, as late=10%", faults.late);
   if (key == "until") return set_share(part, value, 1, "a share of 0 to 100%, as until=80%", faults.until);
   if (key == "reboot") return set_count(part, value, "a number of restarts, 0 to 10000, as reboot=2", faults.reboot);
   if (key == "dead") return set_count(part, value, "a number of nodes, 0 to 10000, as dead=1", faults.dead);
@@ -85,8 +86,8 @@ Status<> set(Faults& faults, std::string_view part, std::string_view key, std::s
     return Done{};
   }
   return input_error("faults: \"" + std::string(part) +
-                     "\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, reboot=2, dead=1, "
-                     "until=80%, separated by commas)");
+                     "\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, late=10%, "
+                     "reboot=2, dead=1, until=80%, separated by commas)");
 }
 
 }  // namespace

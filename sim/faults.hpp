@@ -9,12 +9,13 @@
 
 namespace footlight::sim {
 
-/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,reboot=2,dead=1,until=80%"
+/// Faults drawn from a seed. "loss=5%,corrupt=1%,duplicate=1%,delay=3ms,late=10%,reboot=2,dead=1,until=80%"
 struct Faults {
   double loss = 0;       ///< share of frames that a receiver does not hear, 0..0.3
   double corrupt = 0;    ///< share of frames with a flipped bit, 0..0.3
   double duplicate = 0;  ///< share of frames heard twice, 0..0.5
   Duration delay{};      ///< most that an answer is late, on top of the turnaround; 0..1 s
+  double late = 1;       ///< share of answers that the delay strikes, 0..1
   int reboot = 0;        ///< restarts of random nodes at random instants of the show, 0..10,000
   int dead = 0;          ///< nodes that never answer and never light, 0..10,000
   double until = 1;      ///< share of the show after which nothing is drawn any more, 0..1; the dead stay dead
@@ -34,8 +35,11 @@ class Chance {
   bool lost() { return happens(faults_.loss); }
   bool corrupted() { return happens(faults_.corrupt); }
   bool duplicated() { return happens(faults_.duplicate); }
-  /// How late an answer is, uniform in [0, delay].
-  Duration lateness() { return faults_.delay.count() == 0 ? Duration{} : up_to(faults_.delay); }
+  /// How late an answer is: not at all, or uniform in [0, delay].
+  Duration lateness() {
+    if (faults_.delay.count() == 0 || (faults_.late < 1 && !happens(faults_.late))) return {};
+    return up_to(faults_.delay);
+  }
   std::uint64_t below(std::uint64_t bound) { return rng_.below(bound); }
   /// Uniform in [0, most].
   Duration up_to(Duration most) {

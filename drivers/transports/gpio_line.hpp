@@ -1,46 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "core/result.hpp"
-#include "core/time.hpp"
 
 namespace footlight::drivers {
 
-/// One press for one push of a button, whatever its contact does: the first edge counts at once, then the input is
-/// locked until it has been at rest for the whole lock-out. (The kernel's debounce would delay the press instead.)
-class PressLockout {
- public:
-  explicit PressLockout(Duration lockout) : lockout_(lockout) {}
-  /// @param pressed the level now; call at each edge and at least once per lock-out
-  /// @return true once for each push
-  bool take(bool pressed, Instant now);
-
- private:
-  Duration lockout_;
-  bool locked_ = false;
-  std::optional<Instant> at_rest_since_;
-};
-
-/// A line of a GPIO chip by libgpiod: a cue light, a GO button. Thread: one.
+/// A line of a GPIO chip by libgpiod (version 1 or 2, whichever the program was built with): a GO button, a cue light,
+/// a tally, the direction of an RS-485 transceiver. Thread: one. On and off are logical: what is active low is on when
+/// its level is low.
 class GpioLine {
  public:
   virtual ~GpioLine() = default;
   /// Outputs only.
   virtual Status<> set(bool on) = 0;
-  /// Inputs only: the level now.
+  /// Inputs only: how it is now.
   virtual Result<bool> read() = 0;
+  /// Inputs only: takes the oldest edge that waits. The kernel keeps 16 and drops the newest without notice, so `read`
+  /// has the last word.
+  /// @return how the line was after it; nothing when none waits
+  virtual Result<std::optional<bool>> take_edge() = 0;
+  /// Inputs: file descriptor that becomes readable at an edge; outputs: -1.
+  [[nodiscard]] virtual int poll_handle() const = 0;
 };
 
-enum class GpioDirection { input, output };
+struct GpioSettings {
+  enum class Direction : std::uint8_t { output, input };
+  enum class Bias : std::uint8_t { as_is, pull_up, pull_down };
+  Direction direction = Direction::output;  ///< outputs begin off
+  bool active_low = false;
+  Bias bias = Bias::as_is;  ///< inputs
+};
 
 /// @param chip as "gpiochip0", "/dev/gpiochip0" or the chip's label
 /// @param offset of the line on its chip
 /// Errors: ErrorKind::device: no such chip, line in use, or a program built without libgpiod.
 [[nodiscard]] Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned offset,
-                                                          GpioDirection direction);
+                                                          const GpioSettings& settings);
 
 }  // namespace footlight::drivers

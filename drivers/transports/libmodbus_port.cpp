@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <modbus/modbus.h>
-#include <poll.h>
 
 #include "core/check.hpp"
 #include "core/clock.hpp"
@@ -23,25 +22,29 @@ constexpr Duration kRtuMargin = milliseconds(50);  // adapters hold bytes back f
 constexpr Duration kTcpMargin = milliseconds(100);
 constexpr Duration kTcpTrip = microseconds(500);  // of one request through a local network
 constexpr Duration kByteTimeout = milliseconds(20);
-constexpr int kQuietMs = 20;  // a line that is silent for so long has nothing more to say
-constexpr int kMostQuietRounds = 10;
 constexpr int kGarbledBeforeReconnect = 2;
 
-struct FreeModbus {
+struct CloseAndFree {
+  bool close = true;  ///< false: the socket is the serial device's
   void operator()(modbus_t* context) const {
-    modbus_close(context);
+    if (close) modbus_close(context);
     modbus_free(context);
   }
 };
-using Context = std::unique_ptr<modbus_t, FreeModbus>;
+using Context = std::unique_ptr<modbus_t, CloseAndFree>;
+
+/// An open line or connection.
+struct Connection {
+  std::unique_ptr<SerialDevice> device;  ///< RTU
+  Context context;
+};
 
 /// What tells a serial line from a connection.
 struct Line {
   std::string name;  ///< for messages
-  std::string hint;
-  std::function<modbus_t*()> make;
+  std::function<Result<Connection>()> open;
   bool tcp = false;
-  int bits_per_second = 0;          ///< serial
+  SerialSettings serial;            ///< RTU
   std::vector<std::uint8_t> units;  ///< TCP: who a broadcast goes to
 };
 
@@ -53,24 +56,26 @@ class LibmodbusPort final : public ModbusPort {
   SendStatus submit(const ModbusRequest& request) override;
   std::optional<ModbusReply> poll() override { return std::exchange(reply_, std::nullopt); }
   [[nodiscard]] bool busy() const override { return reply_.has_value(); }
-  bool discard() override { return false; }
+  bool discard() override;
   [[nodiscard]] Duration wire_time(const ModbusRequest& request) const override;
+  [[nodiscard]] std::string trouble() const override { return trouble_; }
 
  private:
   SendStatus broadcast(const ModbusRequest& request);
   int exchange(const ModbusRequest& request, std::vector<std::uint16_t>& values);
   SendStatus fail(int error, ModbusReply reply);
-  void settle();
-  void await_quiet();
-  void disconnect();
+  void await_turn();
+  void disconnect(int error);
+  [[nodiscard]] modbus_t* context() const { return connection_->context.get(); }
 
   Line line_;
-  Context context_;
+  std::optional<Connection> connection_;
   SteadyClock clock_;
   Instant line_free_{};  ///< serial: silence before the next frame ends then
   int unread_ = 0;       ///< TCP: answers to a broadcast that were not awaited
   int garbled_ = 0;      ///< in a row
   std::optional<ModbusReply> reply_;
+  std::string trouble_;
 };
 
 void set_response_timeout(modbus_t* context, Duration timeout) {
@@ -118,6 +123,22 @@ std::vector<std::uint8_t> raw_request(std::uint8_t unit, const ModbusRequest& re
   return bytes;
 }
 
+// libmodbus calls back without saying for whom; `submit` says so.
+thread_local SerialDevice* turned_device = nullptr;
+
+void turn(modbus_t* /*context*/, int speak) {
+  if (turned_device == nullptr) return;
+  // The library has slept for the time of the bytes.
+  speak != 0 ? turned_device->speak() : turned_device->listen(Duration{});
+}
+
+void let_us_turn(modbus_t* context) {
+  turned_device = nullptr;
+  modbus_rtu_set_custom_rts(context, turn);
+  modbus_rtu_set_rts_delay(context, 0);
+  modbus_rtu_set_rts(context, MODBUS_RTU_RTS_UP);
+}
+
 /// libmodbus reports a lost wire by whatever the kernel said.
 bool wire_is_gone(int error) {
   return error == EPIPE || error == ECONNRESET || error == EIO || error == EBADF || error == ENODEV || error == ENXIO ||
@@ -125,17 +146,15 @@ bool wire_is_gone(int error) {
 }
 
 Status<> LibmodbusPort::connect() {
-  Context context(line_.make());
-  if (context) {
-    modbus_set_error_recovery(context.get(), MODBUS_ERROR_RECOVERY_NONE);  // LINK may block for ever
-    set_response_timeout(context.get(), kConnectTimeout);
-    const auto byte_us = static_cast<std::uint32_t>(kByteTimeout / microseconds(1));
-    modbus_set_byte_timeout(context.get(), 0, byte_us);
+  auto opened = line_.open();
+  if (!opened) {
+    trouble_ = opened.error().message;
+    return opened.error();
   }
-  if (!context || modbus_connect(context.get()) != 0) {
-    return device_error(line_.name + ": not opened: " + modbus_strerror(errno) + " (" + line_.hint + ")");
-  }
-  context_ = std::move(context);
+  connection_ = std::move(opened).value();
+  modbus_set_error_recovery(context(), MODBUS_ERROR_RECOVERY_NONE);  // LINK may block for ever
+  modbus_set_byte_timeout(context(), 0, static_cast<std::uint32_t>(kByteTimeout / microseconds(1)));
+  trouble_.clear();
   unread_ = 0;
   garbled_ = 0;
   return Done{};
@@ -145,16 +164,18 @@ SendStatus LibmodbusPort::submit(const ModbusRequest& request) {
   FL_CHECK(request.unit != 0 ||
            (request.function != MODBUS_FC_READ_HOLDING_REGISTERS && request.function != MODBUS_FC_READ_COILS));
   if (busy()) return SendStatus::busy;
-  if (!context_ && !connect()) return SendStatus::down;
-  settle();
+  if (!connection_ && !connect()) return SendStatus::down;
+  await_turn();
+  turned_device = connection_->device.get();
   if (request.unit == 0) return broadcast(request);
   ModbusReply reply;
   reply.unit = request.unit;
   reply.function = request.function;
-  modbus_set_slave(context_.get(), request.unit);
+  modbus_set_slave(context(), request.unit);
   const int count = exchange(request, reply.values);
   const int error = errno;
-  line_free_ = clock_.now() + (line_.tcp ? Duration{} : rtu_silence(line_.bits_per_second));
+  line_free_ = clock_.now();
+  if (!line_.tcp) line_free_ += rtu_silence(line_.serial.bits_per_second, line_.serial.bits_per_character());
   if (count < 0) return fail(error, std::move(reply));
   garbled_ = 0;
   reply_ = std::move(reply);
@@ -162,24 +183,24 @@ SendStatus LibmodbusPort::submit(const ModbusRequest& request) {
 }
 
 int LibmodbusPort::exchange(const ModbusRequest& request, std::vector<std::uint16_t>& values) {
-  set_response_timeout(context_.get(), wire_time(request) + (line_.tcp ? kTcpMargin : kRtuMargin));
+  set_response_timeout(context(), wire_time(request) + (line_.tcp ? kTcpMargin : kRtuMargin));
   switch (request.function) {
     case MODBUS_FC_READ_HOLDING_REGISTERS:
       values.resize(request.count);
-      return modbus_read_registers(context_.get(), request.first_register, request.count, values.data());
+      return modbus_read_registers(context(), request.first_register, request.count, values.data());
     case MODBUS_FC_READ_COILS:
-      return read_coils(context_.get(), request, values);
+      return read_coils(context(), request, values);
     case MODBUS_FC_WRITE_SINGLE_COIL:
       FL_CHECK(request.values.size() == 1);
-      return modbus_write_bit(context_.get(), request.first_register, request.values[0] != 0 ? 1 : 0);
+      return modbus_write_bit(context(), request.first_register, request.values[0] != 0 ? 1 : 0);
     case MODBUS_FC_WRITE_MULTIPLE_COILS:
-      return write_coils(context_.get(), request);
+      return write_coils(context(), request);
     case MODBUS_FC_WRITE_SINGLE_REGISTER:
       FL_CHECK(request.values.size() == 1);
-      return modbus_write_register(context_.get(), request.first_register, request.values[0]);
+      return modbus_write_register(context(), request.first_register, request.values[0]);
     case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
       FL_CHECK(request.values.size() == request.count);
-      return modbus_write_registers(context_.get(), request.first_register, request.count, request.values.data());
+      return modbus_write_registers(context(), request.first_register, request.count, request.values.data());
     default:
       FL_CHECK(false && "a function that the drivers use");
       return -1;
@@ -191,8 +212,8 @@ SendStatus LibmodbusPort::broadcast(const ModbusRequest& request) {
   const std::vector<std::uint8_t> everybody{0};
   for (const std::uint8_t unit : line_.tcp ? line_.units : everybody) {
     const std::vector<std::uint8_t> bytes = raw_request(unit, request);
-    if (modbus_send_raw_request(context_.get(), bytes.data(), static_cast<int>(bytes.size())) < 0) {
-      disconnect();
+    if (modbus_send_raw_request(context(), bytes.data(), static_cast<int>(bytes.size())) < 0) {
+      disconnect(errno);
       return SendStatus::down;
     }
     if (line_.tcp) ++unread_;
@@ -204,7 +225,7 @@ SendStatus LibmodbusPort::broadcast(const ModbusRequest& request) {
 SendStatus LibmodbusPort::fail(int error, ModbusReply reply) {
   reply.values.clear();
   if (wire_is_gone(error)) {
-    disconnect();
+    disconnect(error);
     return SendStatus::down;
   }
   if (error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX) {
@@ -213,60 +234,70 @@ SendStatus LibmodbusPort::fail(int error, ModbusReply reply) {
     garbled_ = 0;
   } else if (error == ETIMEDOUT) {
     reply.outcome = ModbusReply::Outcome::timeout;
-    await_quiet();
   } else {
     reply.outcome = ModbusReply::Outcome::garbled;
-    await_quiet();
-    if (++garbled_ >= kGarbledBeforeReconnect && line_.tcp) disconnect();
+    if (++garbled_ >= kGarbledBeforeReconnect && line_.tcp) disconnect(error);
   }
   reply_ = std::move(reply);
   return SendStatus::accepted;
 }
 
-/// Lets what an earlier request may still bring pass, so that nothing old is taken for the next answer.
-void LibmodbusPort::settle() {
-  if (unread_ > 0) set_response_timeout(context_.get(), kTurnaround + kTcpMargin);
+/// Over TCP the answers to a broadcast are read, so that none of them is taken for the next one; on a serial line the
+/// silence before a frame passes.
+void LibmodbusPort::await_turn() {
+  if (unread_ > 0) set_response_timeout(context(), kTurnaround + kTcpMargin);
   std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> answer{};
   for (; unread_ > 0; --unread_) {
-    if (modbus_receive_confirmation(context_.get(), answer.data()) < 0) break;
+    if (modbus_receive_confirmation(context(), answer.data()) < 0) break;
   }
   unread_ = 0;
   if (line_free_ > clock_.now()) std::this_thread::sleep_for(line_free_ - clock_.now());
-  modbus_flush(context_.get());
 }
 
-/// After one late reply every later request would be answered by the reply before it, without an error.
-void LibmodbusPort::await_quiet() {
-  for (int round = 0; round < kMostQuietRounds; ++round) {
-    pollfd file{modbus_get_socket(context_.get()), POLLIN, 0};
-    if (::poll(&file, 1, kQuietMs) <= 0) return;
-    if (modbus_flush(context_.get()) <= 0) return;
-  }
+/// Never what has been sent and is still on its way out, which modbus_flush throws away, too.
+bool LibmodbusPort::discard() {
+  if (!connection_) return false;
+  if (line_.tcp) return unread_ == 0 && modbus_flush(context()) > 0;
+  std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
+  bool any = false;
+  while (connection_->device->read_some(bytes).value_or(0) > 0) any = true;
+  return any;
 }
 
-void LibmodbusPort::disconnect() { context_.reset(); }
+void LibmodbusPort::disconnect(int error) {
+  connection_.reset();
+  trouble_ = line_.name + ": lost: " + modbus_strerror(error);
+}
 
 Duration LibmodbusPort::wire_time(const ModbusRequest& request) const {
-  if (!line_.tcp) return rtu_wire_time(request, line_.bits_per_second);
+  if (!line_.tcp) return rtu_wire_time(request, line_.serial.bits_per_second, line_.serial.bits_per_character());
   if (request.unit == 0) return kTcpTrip * static_cast<Duration::rep>(line_.units.size());
   return 2 * kTcpTrip + kTurnaround;
 }
 
-Result<std::unique_ptr<ModbusPort>> open(Line line) {
-  auto port = std::make_unique<LibmodbusPort>(std::move(line));
-  if (const auto connected = port->connect(); !connected) return connected.error();
-  return std::unique_ptr<ModbusPort>(std::move(port));
+Result<Connection> open_rtu_line(const std::string& name, const std::string& place, const SerialSettings& settings) {
+  auto device = open_serial_device(place, settings);
+  if (!device) return device.error();
+  const char parity = settings.characters == Characters::e1 ? 'E' : settings.characters == Characters::o1 ? 'O' : 'N';
+  const int stop_bits = settings.characters == Characters::n2 ? 2 : 1;
+  Context context(modbus_new_rtu(place.c_str(), settings.bits_per_second, parity, 8, stop_bits), {.close = false});
+  if (!context) return device_error(name + ": not opened: " + modbus_strerror(errno));
+  // The library would open the port itself, at 9,600 Bd where it does not know the speed.
+  modbus_set_socket(context.get(), (*device)->poll_handle());
+  if ((*device)->turned_by_us()) let_us_turn(context.get());
+  return Connection{std::move(device).value(), std::move(context)};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ModbusPort>> open_modbus_rtu(const std::string& path, int bits_per_second) {
+Result<std::unique_ptr<ModbusPort>> open_modbus_rtu(const std::string& place, const SerialSettings& settings) {
   Line line;
-  line.name = "Modbus line \"" + path + "\"";
-  line.hint = "a port as listed in /dev/serial/by-id, and membership of the group dialout";
-  line.make = [path, bits_per_second] { return modbus_new_rtu(path.c_str(), bits_per_second, 'E', 8, 1); };
-  line.bits_per_second = bits_per_second;
-  return open(std::move(line));
+  line.name = "Modbus line \"" + place + "\"";
+  line.serial = settings;
+  line.open = [name = line.name, place, settings] { return open_rtu_line(name, place, settings); };
+  auto port = std::make_unique<LibmodbusPort>(std::move(line));
+  if (const auto connected = port->connect(); !connected) return connected.error();
+  return std::unique_ptr<ModbusPort>(std::move(port));
 }
 
 Result<std::unique_ptr<ModbusPort>> open_modbus_tcp(const std::string& host, int port,
@@ -274,11 +305,16 @@ Result<std::unique_ptr<ModbusPort>> open_modbus_tcp(const std::string& host, int
   Line line;
   const std::string service = std::to_string(port);
   line.name = "Modbus device \"" + host + ":" + service + "\"";
-  line.hint = "a device that is switched on and reached by this network";
-  line.make = [host, service] { return modbus_new_tcp_pi(host.c_str(), service.c_str()); };
+  line.open = [name = line.name, host, service]() -> Result<Connection> {
+    Connection made{nullptr, Context(modbus_new_tcp_pi(host.c_str(), service.c_str()))};
+    if (made.context) set_response_timeout(made.context.get(), kConnectTimeout);
+    if (made.context && modbus_connect(made.context.get()) == 0) return made;
+    return device_error(name + ": not opened: " + modbus_strerror(errno) +
+                        " (a device that is switched on and reached by this network)");
+  };
   line.tcp = true;
   line.units = std::move(units);
-  return open(std::move(line));
+  return std::unique_ptr<ModbusPort>(std::make_unique<LibmodbusPort>(std::move(line)));
 }
 
 }  // namespace footlight::drivers

@@ -3,7 +3,8 @@
 
 namespace footlight::drivers {
 
-Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned offset, GpioDirection /*direction*/) {
+Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned offset,
+                                            const GpioSettings& /*settings*/) {
   return device_error("GPIO line " + std::to_string(offset) + " of \"" + chip +
                       "\": this program was built without libgpiod (install libgpiod-dev and build again)");
 }

@@ -10,8 +10,8 @@ Error missing(const std::string& what) {
 
 }  // namespace
 
-Result<std::unique_ptr<ModbusPort>> open_modbus_rtu(const std::string& path, int /*bits_per_second*/) {
-  return missing("Modbus line \"" + path + "\"");
+Result<std::unique_ptr<ModbusPort>> open_modbus_rtu(const std::string& place, const SerialSettings& /*settings*/) {
+  return missing("Modbus line \"" + place + "\"");
 }
 
 Result<std::unique_ptr<ModbusPort>> open_modbus_tcp(const std::string& host, int port,

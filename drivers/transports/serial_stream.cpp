@@ -1,38 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transports/serial_stream.hpp"
 
-#include <cerrno>
 #include <cstddef>
-#include <system_error>
 #include <utility>
-
-#include <sys/stat.h>
-#include <sys/sysmacros.h>
 
 #include "core/check.hpp"
 
 namespace footlight::drivers {
-namespace {
 
-constexpr int kBitsPerCharacter = 10;
-
-/// Unix98 slaves have the majors 136 to 143 (Linux, Documentation/admin-guide/devices.txt).
-bool is_pseudo_terminal(const struct stat& status) {
-  return major(status.st_rdev) >= 136 && major(status.st_rdev) <= 143;
-}
-
-}  // namespace
-
-SerialStream::SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, int bits_per_second)
-    : device_(std::move(device)), reopen_(std::move(reopen)), bits_per_second_(bits_per_second) {
-  FL_CHECK(bits_per_second_ > 0);
+SerialStream::SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen,
+                           const SerialSettings& settings)
+    : device_(std::move(device)), reopen_(std::move(reopen)), settings_(settings) {
+  FL_CHECK(settings_.bits_per_second > 0);
 }
 
 SendStatus SerialStream::write(std::span<const std::uint8_t> bytes) {
   if (!device_) {
     auto device = reopen_();
-    if (!device) return SendStatus::down;
+    if (!device) {
+      trouble_ = device.error().message;
+      return SendStatus::down;
+    }
     device_ = std::move(device).value();
+    trouble_.clear();
   }
   push_unsent();
   if (!device_) return SendStatus::down;
@@ -55,11 +45,6 @@ std::size_t SerialStream::read(std::span<std::uint8_t> buffer) {
   return count.value_or(0);
 }
 
-Duration SerialStream::wire_time(std::size_t bytes) const {
-  const auto bits = static_cast<Duration::rep>(bytes) * kBitsPerCharacter;
-  return Duration((bits * 1'000'000'000 + bits_per_second_ - 1) / bits_per_second_);
-}
-
 void SerialStream::push_unsent() {
   if (!device_ || unsent_.empty()) return;
   const auto taken = device_->write_some(unsent_);
@@ -70,27 +55,15 @@ void SerialStream::push_unsent() {
 void SerialStream::lose_device() {
   device_.reset();
   unsent_.clear();
+  trouble_ = "unplugged";
 }
 
-Result<std::unique_ptr<ByteStream>> open_serial(const std::string& path, int bits_per_second) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    return device_error("serial port \"" + path + "\": " + std::generic_category().message(errno) +
-                        " (a port as listed in /dev/serial/by-id)");
-  }
-  if (!S_ISCHR(status.st_mode)) {
-    return device_error("serial port \"" + path + "\": not a serial port (a port as listed in /dev/serial/by-id)");
-  }
-  OpenSerialDevice open;
-  if (is_pseudo_terminal(status)) {
-    open = [path] { return open_terminal_device(path); };
-  } else {
-    open = [path, bits_per_second] { return open_serial_port_device(path, bits_per_second); };
-  }
+Result<std::unique_ptr<ByteStream>> open_serial(const std::string& place, const SerialSettings& settings) {
+  OpenSerialDevice open = [place, settings] { return open_serial_device(place, settings); };
   auto device = open();
   if (!device) return device.error();
   return std::unique_ptr<ByteStream>(
-      std::make_unique<SerialStream>(std::move(device).value(), std::move(open), bits_per_second));
+      std::make_unique<SerialStream>(std::move(device).value(), std::move(open), settings));
 }
 
 }  // namespace footlight::drivers

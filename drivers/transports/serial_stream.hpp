@@ -4,27 +4,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 #include "drivers/transport.hpp"
+#include "drivers/transports/serial_device.hpp"
 
 namespace footlight::drivers {
-
-/// An open serial device that never blocks; what a library has to give.
-class SerialDevice {
- public:
-  virtual ~SerialDevice() = default;
-  /// @return bytes taken, 0 when the queue is full, nothing when the device is gone
-  virtual std::optional<std::size_t> write_some(std::span<const std::uint8_t> bytes) = 0;
-  /// @return bytes read, 0 when none has arrived, nothing when the device is gone
-  virtual std::optional<std::size_t> read_some(std::span<std::uint8_t> buffer) = 0;
-  /// File descriptor to poll for input.
-  [[nodiscard]] virtual int poll_handle() const = 0;
-};
 
 using OpenSerialDevice = std::function<Result<std::unique_ptr<SerialDevice>>()>;
 
@@ -32,13 +20,13 @@ using OpenSerialDevice = std::function<Result<std::unique_ptr<SerialDevice>>()>;
 /// until it has. A device that is gone is opened anew by each write, so that a cable may be put back.
 class SerialStream final : public ByteStream {
  public:
-  /// @param bits_per_second of the wire, 10 bits a character (8N1)
-  SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, int bits_per_second);
+  SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, const SerialSettings& settings);
 
   SendStatus write(std::span<const std::uint8_t> bytes) override;
   std::size_t read(std::span<std::uint8_t> buffer) override;
-  [[nodiscard]] Duration wire_time(std::size_t bytes) const override;
+  [[nodiscard]] Duration wire_time(std::size_t bytes) const override { return settings_.time_of(bytes); }
   [[nodiscard]] int poll_handle() const override { return device_ ? device_->poll_handle() : -1; }
+  [[nodiscard]] std::string trouble() const override { return trouble_; }
 
  private:
   void push_unsent();
@@ -46,18 +34,13 @@ class SerialStream final : public ByteStream {
 
   std::unique_ptr<SerialDevice> device_;  ///< null: gone
   OpenSerialDevice reopen_;
-  int bits_per_second_;
+  SerialSettings settings_;
   std::vector<std::uint8_t> unsent_;
+  std::string trouble_;
 };
 
-/// Opens a serial port by libserialport, or a pseudo-terminal, which that library refuses, by termios.
-/// @param path as "/dev/serial/by-id/..."
+/// @param place as of open_serial_device
 /// Errors: ErrorKind::device, with what the machine said.
-[[nodiscard]] Result<std::unique_ptr<ByteStream>> open_serial(const std::string& path, int bits_per_second);
-
-/// The two kinds of device. libserialport's says so when the program was built without that library.
-[[nodiscard]] Result<std::unique_ptr<SerialDevice>> open_serial_port_device(const std::string& path,
-                                                                            int bits_per_second);
-[[nodiscard]] Result<std::unique_ptr<SerialDevice>> open_terminal_device(const std::string& path);
+[[nodiscard]] Result<std::unique_ptr<ByteStream>> open_serial(const std::string& place, const SerialSettings& settings);
 
 }  // namespace footlight::drivers

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "drivers/transports/file_descriptor.hpp"
-#include "drivers/transports/serial_stream.hpp"
+#include "drivers/transports/serial_device.hpp"
 
 namespace footlight::drivers {
 namespace {
@@ -22,7 +22,10 @@ class TerminalDevice final : public SerialDevice {
     return outcome(::write(file_.get(), bytes.data(), bytes.size()));
   }
   std::optional<std::size_t> read_some(std::span<std::uint8_t> buffer) override {
-    return outcome(::read(file_.get(), buffer.data(), buffer.size()));
+    const ssize_t count = ::read(file_.get(), buffer.data(), buffer.size());
+    // A terminal that has been hung up has an end and is readable without end.
+    if (count == 0 && !buffer.empty()) return std::nullopt;
+    return outcome(count);
   }
   [[nodiscard]] int poll_handle() const override { return file_.get(); }
 

@@ -281,6 +281,63 @@ TEST_P(AnyBus, AControllerThatStartsInTheMiddleLightsTheRightStateAndNothingBefo
   }
 }
 
+/// Instants at which a node was preloaded.
+std::vector<Instant> preloads_of(const FakeDriver& driver, std::size_t n) {
+  std::vector<Instant> list;
+  for (const auto& operation : driver.log) {
+    if (operation.kind == Kind::preload && operation.node == NodeIndex::of(n)) list.push_back(operation.at);
+  }
+  return list;
+}
+
+TEST(SequencedBus, ADeviceThatSaysItIsBusyIsLeftAloneForLongerEachTime) {
+  Bench bench(schedule_of(3, 3, [](std::size_t k, std::size_t n) { return every_switch(k, n); }), 3, false);
+  int refusals = 0;
+  bench.driver.refuses = [&](NodeIndex node) {
+    const bool busy = node == NodeIndex(1) && refusals < 5;
+    refusals += busy ? 1 : 0;
+    return busy ? std::optional(drivers::DeviceEvent::Again::later) : std::nullopt;
+  };
+  bench.stands_at = 0;
+  bench.run_until(instant_at(3));
+  const auto tries = preloads_of(bench.driver, 1);
+  ASSERT_GE(tries.size(), 6U);
+  Duration rest = milliseconds(20);
+  for (std::size_t i = 1; i < 6; ++i, rest *= 2) {
+    EXPECT_GE(tries[i] - tries[i - 1], rest) << i;
+    EXPECT_LE(tries[i] - tries[i - 1], rest + milliseconds(20)) << i;
+  }
+  EXPECT_TRUE(bench.right(1, 0));
+  EXPECT_EQ(bench.loop.counters().quarantines, 0U) << "busy is not silent";
+}
+
+TEST(SequencedBus, ADeviceThatIsBusyForGoodIsQuarantined) {
+  Bench bench(schedule_of(3, 6, every_switch), 3, false);
+  bench.driver.refuses = [](NodeIndex node) {
+    return node == NodeIndex(1) ? std::optional(drivers::DeviceEvent::Again::later) : std::nullopt;
+  };
+  for (std::size_t k = 1; k < 6; ++k) {
+    bench.run_to_switch(k);
+    EXPECT_TRUE(bench.right(0, k - 1) && bench.right(2, k - 1)) << "before switch " << k;
+  }
+  bench.run_until(instant_at(8));
+  EXPECT_EQ(bench.loop.quarantined(), std::vector{NodeIndex(1)});
+}
+
+TEST(SequencedBus, WhatIsRefusedForGoodIsNotSentAgainButOnceASecond) {
+  Bench bench(schedule_of(3, 6, every_switch), 3, false);
+  bench.driver.refuses = [](NodeIndex node) {
+    return node == NodeIndex(1) ? std::optional(drivers::DeviceEvent::Again::never) : std::nullopt;
+  };
+  bench.run_to_switch(5);
+  EXPECT_TRUE(bench.right(0, 4) && bench.right(2, 4));
+  bench.stands_at = 4;
+  bench.run_until(instant_at(12));
+  const auto tries = preloads_of(bench.driver, 1);
+  ASSERT_GE(tries.size(), 2U);
+  for (std::size_t i = 1; i < tries.size(); ++i) EXPECT_GE(tries[i] - tries[i - 1], milliseconds(990)) << i;
+}
+
 TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
   const CueSchedule schedule = schedule_of(3, 4, every_switch);
   Bench bench(schedule, 3, false);

@@ -46,6 +46,11 @@ class FakeDriver final : public drivers::Driver {
   std::function<bool(Kind, NodeIndex, Instant)> lost = [](Kind, NodeIndex, Instant) { return false; };
   std::function<bool(NodeIndex, Instant)> answer_lost = [](NodeIndex, Instant) { return false; };
 
+  /// What a node says to a preload instead of taking it; nothing: it takes it.
+  std::function<std::optional<drivers::DeviceEvent::Again>(NodeIndex)> refuses = [](NodeIndex) {
+    return std::optional<drivers::DeviceEvent::Again>{};
+  };
+
   [[nodiscard]] Node& node(std::size_t n) { return nodes_[n]; }
   void reboot(std::size_t n) {
     Node& node = nodes_[n];
@@ -127,6 +132,11 @@ class FakeDriver final : public drivers::Driver {
   void finish(const Operation& operation, drivers::EventSink& events) {
     using Event = drivers::DeviceEvent;
     if (operation.kind == Kind::preload) {
+      if (const auto again = refuses(operation.node)) {
+        Event refusal{Event::Kind::rejected, operation.node, operation.sequence};
+        refusal.again = *again;
+        return events.on_event(refusal);
+      }
       Node& node = nodes_[operation.node.at()];
       const bool heard = !node.dead && !lost(operation.kind, operation.node, operation.at);
       if (heard) {

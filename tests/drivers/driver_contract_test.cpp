@@ -145,12 +145,16 @@ class ModbusBench final : public Bench {
     port_.answer(ModbusReply::Outcome::ok);
   }
   void answer_status(const NodeAddress& /*node*/, const Shown& shown) override {
-    port_.answer(ModbusReply::Outcome::ok,
-                 {static_cast<std::uint16_t>(shown.sequence << 8), shown.crc, shown.state, shown.boots, 9, 0});
+    std::vector<std::uint16_t> registers{
+        static_cast<std::uint16_t>(shown.sequence << 8), shown.crc, shown.state, shown.boots, 9, 0};
+    registers.resize(port_.sent.back().count);
+    port_.answer(ModbusReply::Outcome::ok, std::move(registers));
   }
   void stay_silent() override {
     now += milliseconds(100);
     port_.answer(ModbusReply::Outcome::timeout);
+    step();
+    now += milliseconds(100);  // and the line is quiet
   }
   void garbage(Rng& /*rng*/) override {
     if (port_.taken && port_.sent.back().unit != 0) port_.answer(ModbusReply::Outcome::garbled);

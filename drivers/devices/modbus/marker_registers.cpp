@@ -127,9 +127,10 @@ Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_
   return write(profile, unit, profile.heartbeat_register.value(), {first, second});
 }
 
-ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit) {
+ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit, std::uint16_t count) {
   FL_CHECK(profile.status_register.has_value());
-  return {unit, kReadRegisters, static_cast<std::uint16_t>(profile.status_register.value()), kStatusRegisters, {}};
+  FL_CHECK(count >= 1 && count <= kStatusRegisters);
+  return {unit, kReadRegisters, static_cast<std::uint16_t>(profile.status_register.value()), count, {}};
 }
 
 ModbusRequest looks_request(const ModbusProfile& profile, std::uint8_t unit, int channels) {
@@ -201,7 +202,7 @@ Requests look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex i
 }
 
 std::optional<NodeStatus> decode_status(std::span<const std::uint16_t> registers) {
-  if (registers.size() != kStatusRegisters) return std::nullopt;
+  if (registers.size() < kNeededStatusRegisters || registers.size() > kStatusRegisters) return std::nullopt;
   return NodeStatus{static_cast<Sequence>(registers[0] >> 8U), static_cast<Sequence>(registers[0] & 0xFFU),
                     registers[1], static_cast<std::uint8_t>(registers[2] & 0xFFU), registers[3]};
 }

@@ -23,6 +23,7 @@ inline constexpr std::uint8_t kWriteRegister = 0x06;
 inline constexpr std::uint8_t kWriteCoils = 0x0F;
 inline constexpr std::uint8_t kWriteRegisters = 0x10;
 inline constexpr std::uint16_t kStatusRegisters = 6;
+inline constexpr std::uint16_t kNeededStatusRegisters = 4;  ///< the others are for people
 
 /// The profile of our own marker (drivers/profiles/footlight-marker.yaml).
 [[nodiscard]] ModbusProfile footlight_marker();
@@ -44,8 +45,9 @@ using Requests = std::vector<ModbusRequest>;
                              Sequence sequence);
 /// @param profile with a heartbeat register
 [[nodiscard]] Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms);
-/// @param profile with a status register
-[[nodiscard]] ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit);
+/// @param profile with a status register  @param count 1..6, the first registers of the block
+[[nodiscard]] ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit,
+                                           std::uint16_t count = kStatusRegisters);
 /// Reads the looks where they are written. @param profile with readable looks
 [[nodiscard]] ModbusRequest looks_request(const ModbusProfile& profile, std::uint8_t unit, int channels);
 /// What was read by `looks_request`, one value a channel; nothing when there are not as many registers as asked for.
@@ -62,7 +64,7 @@ struct NodeStatus {
   std::uint8_t state = 0;
   std::uint16_t boots = 0;
 };
-/// @return nothing when there are not as many registers as were asked for
+/// @return nothing when there are not 4..6 registers
 [[nodiscard]] std::optional<NodeStatus> decode_status(std::span<const std::uint16_t> registers);
 
 }  // namespace footlight::drivers::modbus

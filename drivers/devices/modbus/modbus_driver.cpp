@@ -10,10 +10,21 @@ namespace footlight::drivers {
 namespace {
 
 constexpr std::uint8_t kBroadcast = 0;
-constexpr std::uint8_t kDeviceFailure = 4;           // the only exception that is tried again at once
+constexpr Duration kQuiet = milliseconds(20);        // a line that is silent for so long has nothing more to say
+constexpr int kMostQuietRounds = 10;                 // nor does a node that never stops talking keep the others waiting
+constexpr Duration kForget = milliseconds(1000);     // an open question after which there was silence
 constexpr Duration kPollInterval = milliseconds(1);  // for a reply that is later than it should be
 constexpr std::uint8_t kShowing = 1;                 // state of a node; what tells no state shows
 constexpr std::uint8_t kAnyUnit = 1;                 // for budgets
+
+/// Modbus Application Protocol V1.1b3, section 7.
+enum Exception : std::uint8_t {
+  kDeviceFailure = 4,  ///< the only one that is tried again at once
+  kAcknowledge = 5,    ///< working on it
+  kDeviceBusy = 6,
+  kGatewayPath = 10,
+  kGatewayTarget = 11,
+};
 
 }  // namespace
 
@@ -168,7 +179,11 @@ SendStatus ModbusDriver::heartbeat(Duration show_time, Instant now) {
 
 SendStatus ModbusDriver::ask(const NodeAddress& node, Instant now) {
   if (profile_.status_register) {
-    return run({{Purpose::status, node.node, 0, modbus::status_request(profile_, node.unit())}}, now);
+    if (!ready() || quiet_) return SendStatus::busy;
+    auto asked = question(node.node, node.unit(), now);
+    if (asked) return run({{Purpose::status, node.node, 0, std::move(*asked)}}, now);
+    due_.push_back({DeviceEvent::Kind::missed, node.node});
+    return SendStatus::accepted;
   }
   if (!profile_.readable_looks) return SendStatus::accepted;
   return run({{Purpose::looks, node.node, 0, modbus::looks_request(profile_, node.unit(), node.channels)}}, now);
@@ -182,9 +197,24 @@ SendStatus ModbusDriver::upload_look(LookIndex index, const Look& look, Instant 
   return status;
 }
 
+std::optional<ModbusRequest> ModbusDriver::question(NodeIndex node, std::uint8_t unit, Instant now) {
+  Known& known = known_[node];
+  if (now - known.asked_at >= kForget) known.open = 0;
+  for (std::uint16_t count = modbus::kStatusRegisters; count >= 1; --count) {
+    if ((known.open >> count & 1U) != 0) continue;
+    known.asked_at = now;
+    return modbus::status_request(profile_, unit, count);
+  }
+  return std::nullopt;
+}
+
 SendStatus ModbusDriver::run(std::vector<Job> jobs, Instant now) {
   if (!ready()) return SendStatus::busy;
   if (jobs.empty()) return SendStatus::accepted;
+  const Purpose purpose = jobs.front().purpose;
+  const bool moment = jobs.front().request.unit == kBroadcast || purpose == Purpose::late_write ||
+                      purpose == Purpose::latch || purpose == Purpose::heartbeat;
+  if (quiet_ && !moment) return SendStatus::busy;
   const SendStatus status = submit(jobs.front(), now);
   if (status != SendStatus::accepted) return status;
   jobs_.assign(jobs.begin() + 1, jobs.end());
@@ -192,6 +222,7 @@ SendStatus ModbusDriver::run(std::vector<Job> jobs, Instant now) {
 }
 
 SendStatus ModbusDriver::submit(const Job& job, Instant now) {
+  if (job.request.unit != kBroadcast) port_.discard();
   const SendStatus status = port_.submit(job.request);
   if (status != SendStatus::busy) down_ = status == SendStatus::down;
   if (status != SendStatus::accepted) return status;
@@ -209,18 +240,21 @@ Instant ModbusDriver::step(Instant now, EventSink& events) {
     const bool broadcast_over = under_way_->request.unit == kBroadcast && !port_.busy();
     if (!reply && !broadcast_over) return expected_ > now ? expected_ : now + kPollInterval;
     const Job job = *std::exchange(under_way_, std::nullopt);
-    if (reply && job.request.unit != kBroadcast) finish(job, *reply, events);
-    if (profile_.pause_after_write > Duration{} && job.purpose != Purpose::status && job.purpose != Purpose::looks) {
+    if (reply && job.request.unit != kBroadcast) finish(job, *reply, now, events);
+    const bool wrote = job.purpose != Purpose::status && job.purpose != Purpose::read_back && job.purpose != Purpose::looks;
+    if (profile_.pause_after_write > Duration{} && wrote) {
       paused_ = true;
       pause_until_ = now + profile_.pause_after_write;
     }
   }
   paused_ = paused_ && now < pause_until_;
+  if (quiet_ && now >= quiet_until_ && !port_.busy()) end_quiet(now);
   if (!paused_) submit_next(now, events);
   tell_bus(events);
   if (under_way_) return expected_ > now ? expected_ : now + kPollInterval;
   if (paused_) return pause_until_;
-  return jobs_.empty() ? kNever : now + kPollInterval;
+  if (!jobs_.empty()) return now + kPollInterval;
+  return quiet_ ? quiet_until_ : kNever;
 }
 
 void ModbusDriver::submit_next(Instant now, EventSink& events) {
@@ -237,35 +271,61 @@ void ModbusDriver::submit_next(Instant now, EventSink& events) {
   }
 }
 
-void ModbusDriver::finish(const Job& job, const ModbusReply& reply, EventSink& events) {
-  DeviceEvent event{DeviceEvent::Kind::missed, job.node, job.sequence};
-  const bool fits = reply.unit == job.request.unit && reply.function == job.request.function;
+void ModbusDriver::begin_quiet(Instant now) {
+  quiet_ = true;
+  quiet_rounds_ = 0;
+  quiet_until_ = now + kQuiet;
+}
+
+void ModbusDriver::end_quiet(Instant now) {
+  quiet_ = port_.discard() && ++quiet_rounds_ < kMostQuietRounds;
+  if (quiet_) quiet_until_ = now + kQuiet;
+}
+
+void ModbusDriver::finish(const Job& job, const ModbusReply& reply, Instant now, EventSink& events) {
+  const bool same = reply.unit == job.request.unit && reply.function == job.request.function;
   if (job.purpose == Purpose::service) {
     ModbusReply service = reply;
-    if (!fits && reply.outcome != ModbusReply::Outcome::timeout) service.outcome = ModbusReply::Outcome::garbled;
+    if (!same && reply.outcome != ModbusReply::Outcome::timeout) service.outcome = ModbusReply::Outcome::garbled;
+    if (service.outcome != ModbusReply::Outcome::ok && service.outcome != ModbusReply::Outcome::exception) begin_quiet(now);
     return finish_service(job, service, events);
   }
-  if (reply.outcome == ModbusReply::Outcome::exception && fits) {
-    if (reply.exception_code == kDeviceFailure && !job.retried) {
+  const bool question = job.purpose == Purpose::status || job.purpose == Purpose::read_back;
+  if (reply.outcome == ModbusReply::Outcome::exception && same) {
+    refuse(job, reply.exception_code, events);
+  } else if (reply.outcome != ModbusReply::Outcome::ok || !same ||
+             (question && reply.values.size() != job.request.count)) {
+    known_[job.node].owes = true;
+    if (question) known_[job.node].open |= static_cast<std::uint8_t>(1U << job.request.count);
+    begin_quiet(now);
+    drop_rest_of(job);
+    events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+  } else if (question) {
+    take_status(job, reply, now, events);
+  } else if (job.purpose == Purpose::looks) {
+    tell_looks(job, reply, events);
+  } else if (job.purpose == Purpose::preload && job.last) {
+    receipt(job, now, events);
+  }
+}
+
+void ModbusDriver::refuse(const Job& job, std::uint8_t code, EventSink& events) {
+  DeviceEvent event{DeviceEvent::Kind::rejected, job.node, job.sequence};
+  event.detail = code;
+  // A refusal by one who owes an answer may be of something else.
+  if (code == kGatewayPath || code == kGatewayTarget || known_[job.node].owes) {
+    event.kind = DeviceEvent::Kind::missed;
+  } else if (code == kDeviceFailure) {
+    if (!job.retried) {
       jobs_.push_front(job);
       jobs_.front().retried = true;
       return;
     }
-    event.kind = DeviceEvent::Kind::rejected;
-    event.detail = reply.exception_code;
-    drop_rest_of(job);
-    events.on_event(event);
-  } else if (reply.outcome != ModbusReply::Outcome::ok || !fits) {
-    drop_rest_of(job);
-    events.on_event(event);
-  } else if (job.purpose == Purpose::status) {
-    tell_status(job, reply, events);
-  } else if (job.purpose == Purpose::looks) {
-    tell_looks(job, reply, events);
-  } else if (job.purpose == Purpose::preload && job.last) {
-    event.kind = DeviceEvent::Kind::preloaded;
-    events.on_event(event);
+  } else {
+    event.again = code == kAcknowledge || code == kDeviceBusy ? DeviceEvent::Again::later : DeviceEvent::Again::never;
   }
+  drop_rest_of(job);
+  events.on_event(event);
 }
 
 /// What is half written is begun anew, when the bus loop asks for it.
@@ -290,15 +350,35 @@ void ModbusDriver::tell_looks(const Job& job, const ModbusReply& reply, EventSin
   events.on_event(event);
 }
 
-void ModbusDriver::tell_status(const Job& job, const ModbusReply& reply, EventSink& events) {
-  const auto status = modbus::decode_status(reply.values);
-  if (!status) {
+void ModbusDriver::receipt(const Job& job, Instant now, EventSink& events) {
+  if (known_[job.node].owes && profile_.status_register && profile_.has_preload_sequence) {
+    ask_on(job, Purpose::read_back, now, events);
+  } else {
+    events.on_event({DeviceEvent::Kind::preloaded, job.node, job.sequence});
+  }
+}
+
+void ModbusDriver::ask_on(const Job& job, Purpose purpose, Instant now, EventSink& events) {
+  if (auto asked = question(job.node, job.request.unit, now)) {
+    jobs_.push_front({purpose, job.node, job.sequence, std::move(*asked)});
+  } else {
     events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+  }
+}
+
+void ModbusDriver::take_status(const Job& job, const ModbusReply& reply, Instant now, EventSink& events) {
+  Known& known = known_[job.node];
+  known.open = 0;
+  known.owes = false;
+  const auto status = modbus::decode_status(reply.values);
+  if (!status) return ask_on(job, job.purpose, now, events);  // it has come to this question: now in full
+  if (known.boots && *known.boots != status->boots) events.on_event({DeviceEvent::Kind::booted, job.node});
+  known.boots = status->boots;
+  if (job.purpose == Purpose::read_back) {
+    const bool taken = status->pending_sequence == job.sequence || status->shown_sequence == job.sequence;
+    events.on_event({taken ? DeviceEvent::Kind::preloaded : DeviceEvent::Kind::missed, job.node, job.sequence});
     return;
   }
-  std::optional<std::uint16_t>& boots = boots_[job.node];
-  if (boots && *boots != status->boots) events.on_event({DeviceEvent::Kind::booted, job.node});
-  boots = status->boots;
   DeviceEvent event{DeviceEvent::Kind::showing, job.node, status->shown_sequence};
   event.crc = status->crc;
   event.state = status->state;

@@ -24,9 +24,23 @@ namespace footlight::drivers {
 /// status register `ask` reads the looks back where the profile says that they can be read (their values fit or do not;
 /// no sequence tells an old answer from a new one), and tells nothing where they cannot; without a look table
 /// `upload_look` sends nothing, and a device with numbers of its own is told the nearest of them. A device that knows
-/// no broadcast gets everything node by node. Exceptions 1-3, 5, 6
-/// and above are `rejected` with their code (whether to wait and try again is the bus loop's affair); 4 is tried once
-/// more first. An answer of another unit, function or length is `missed`.
+/// no broadcast gets everything node by node.
+///
+/// Exceptions: 1-3, 7, 8 are `rejected`, never to be sent again; 4 is tried once more first; 5 and 6 are `rejected` until
+/// later; 10 and 11 are a gateway's word for `missed`. An answer of another unit, function or length is `missed`.
+///
+/// Late answers. RTU has nothing to tell them by, so an answer that comes after its time-out would be taken for the
+/// answer to the next request, and every later one with it. Therefore
+/// - after a time-out or garbage no unit is asked until the line has been quiet for 20 ms (broadcasts go out, for the
+///   moment does not wait), and what nobody waits for is thrown away before each request;
+/// - a question for the status is of 6 registers, and as long as one of them is open, of another length: a late answer
+///   is one of the wrong length. 5 and 4 registers say as much; 3, 2 and 1 only that the node has come to this
+///   question, which is then asked in full. A node that leaves all six open is not asked for a second;
+/// - from a node that owes an answer a preload's receipt is not believed: its status is read back, and `preloaded` is
+///   told when that carries the preload's sequence.
+/// Devices answer in order, so a right status ends the doubt. Assumed is: no answer is a second late after a second of
+/// silence. A profile without preload sequence or status has only the quiet time: there an answer that is more than
+/// that late is assumed not to happen.
 class ModbusDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver; it gives up on silent devices itself (Outcome::timeout)
@@ -59,7 +73,7 @@ class ModbusDriver final : public Driver {
   Instant step(Instant now, EventSink& events) override;
 
  private:
-  enum class Purpose { preload, latch, late_write, heartbeat, status, looks, look, service };
+  enum class Purpose { preload, read_back, latch, late_write, heartbeat, status, looks, look, service };
   struct Job {
     Purpose purpose = Purpose::status;
     NodeIndex node;  ///< of a request to one unit
@@ -67,6 +81,13 @@ class ModbusDriver final : public Driver {
     ModbusRequest request;
     bool retried = false;
     bool last = true;  ///< of the requests of its operation to this node
+  };
+  /// What is known of a node that can be asked for its status.
+  struct Known {
+    std::optional<std::uint16_t> boots;
+    std::uint8_t open = 0;  ///< bit n: a question of n registers has not been answered
+    Instant asked_at;       ///< the last question
+    bool owes = false;      ///< an answer that may still come, to whatever request
   };
   /// What has been written to a node that is read back by its values.
   struct Written {
@@ -94,16 +115,23 @@ class ModbusDriver final : public Driver {
   SendStatus run(std::vector<Job> jobs, Instant now);
   SendStatus submit(const Job& job, Instant now);
   void submit_next(Instant now, EventSink& events);
-  void finish(const Job& job, const ModbusReply& reply, EventSink& events);
-  void tell_status(const Job& job, const ModbusReply& reply, EventSink& events);
+  void finish(const Job& job, const ModbusReply& reply, Instant now, EventSink& events);
+  void refuse(const Job& job, std::uint8_t code, EventSink& events);
+  void receipt(const Job& job, Instant now, EventSink& events);
+  void take_status(const Job& job, const ModbusReply& reply, Instant now, EventSink& events);
+  void ask_on(const Job& job, Purpose purpose, Instant now, EventSink& events);
   void tell_looks(const Job& job, const ModbusReply& reply, EventSink& events);
   void tell_bus(EventSink& events);
+  void begin_quiet(Instant now);
+  void end_quiet(Instant now);
+  /// Of a length that no open question has; nothing when all are open.
+  std::optional<ModbusRequest> question(NodeIndex node, std::uint8_t unit, Instant now);
 
   ModbusPort& port_;
   ModbusProfile profile_;
   std::vector<NodeAddress> nodes_;
   std::uint8_t plan_byte_;
-  std::map<NodeIndex, std::optional<std::uint16_t>> boots_;  ///< last known
+  std::map<NodeIndex, Known> known_;
   std::map<NodeIndex, Kept> kept_;                           ///< profiles without a latch
   std::map<NodeIndex, Written> pending_;                     ///< preloaded, not latched: values read back
   std::map<NodeIndex, Written> written_;                     ///< latched: what a reading should give
@@ -111,10 +139,13 @@ class ModbusDriver final : public Driver {
   std::vector<DeviceEvent> due_;                             ///< told by the next step
   std::optional<ServiceAnswer> service_;                     ///< a technician's request under way
   std::optional<Job> under_way_;
-  std::deque<Job> jobs_;  ///< late writes, a second try
+  std::deque<Job> jobs_;  ///< the rest of an operation, a second try, a read-back
   bool paused_ = false;   ///< the device wants time after a write
   Instant pause_until_{};
   Instant expected_ = kNever;  ///< when the reply should be there
+  bool quiet_ = false;         ///< no unit is asked
+  Instant quiet_until_{};
+  int quiet_rounds_ = 0;  ///< in which something was still heard
   bool down_ = false;
   bool down_told_ = false;
 };

@@ -35,16 +35,177 @@ class ModbusDriverTest : public ::testing::Test {
 };
 
 TEST_F(ModbusDriverTest, ExceptionsOneToThreeAreRefusalsAtOnce) {
-  for (const std::uint8_t code :
-       {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{5}, std::uint8_t{6}}) {
+  for (const std::uint8_t code : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}}) {
     ASSERT_EQ(driver_->preload(kOne, 1, kFour, now_), SendStatus::accepted);
     answer(Outcome::exception, {}, code);
     ASSERT_NE(log_.last(Kind::rejected), nullptr);
     EXPECT_EQ(log_.last(Kind::rejected)->detail, code);
     EXPECT_EQ(log_.last(Kind::rejected)->node, kOne.node);
+    EXPECT_EQ(log_.last(Kind::rejected)->again, DeviceEvent::Again::never);
   }
-  EXPECT_EQ(port_.sent.size(), 5U) << "no second try";
-  EXPECT_EQ(log_.events.size(), 5U);
+  EXPECT_EQ(port_.sent.size(), 3U) << "no second try";
+  EXPECT_EQ(log_.events.size(), 3U);
+}
+
+TEST_F(ModbusDriverTest, ExceptionsFiveAndSixAreForLater) {
+  for (const std::uint8_t code : {std::uint8_t{5}, std::uint8_t{6}}) {
+    ASSERT_EQ(driver_->preload(kOne, 1, kFour, now_), SendStatus::accepted);
+    answer(Outcome::exception, {}, code);
+    ASSERT_NE(log_.last(Kind::rejected), nullptr);
+    EXPECT_EQ(log_.last(Kind::rejected)->again, DeviceEvent::Again::later);
+    EXPECT_TRUE(driver_->ready()) << "others have their turn";
+  }
+  EXPECT_EQ(port_.sent.size(), 2U);
+}
+
+TEST_F(ModbusDriverTest, AGatewayThatReachesNobodyIsANodeThatIsMissed) {
+  for (const std::uint8_t code : {std::uint8_t{10}, std::uint8_t{11}}) {
+    ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+    answer(Outcome::exception, {}, code);
+  }
+  EXPECT_EQ(log_.count(Kind::missed), 2U);
+  EXPECT_EQ(log_.count(Kind::rejected), 0U);
+}
+
+TEST_F(ModbusDriverTest, AfterATimeOutNoUnitIsAskedUntilTheLineIsQuiet) {
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::timeout);
+  EXPECT_EQ(driver_->ask(kTwo, now_), SendStatus::busy);
+  EXPECT_EQ(driver_->preload(kTwo, 1, kThree, now_), SendStatus::busy);
+  port_.unread = true;  // the late answer comes
+  now_ += milliseconds(20);
+  const Instant again = step();
+  EXPECT_EQ(again, now_ + milliseconds(20)) << "another round, for something was heard";
+  EXPECT_EQ(driver_->ask(kTwo, now_), SendStatus::busy);
+  now_ = again;
+  EXPECT_EQ(step(), kNever);
+  EXPECT_EQ(driver_->ask(kTwo, now_), SendStatus::accepted);
+}
+
+TEST_F(ModbusDriverTest, TheMomentDoesNotWaitForQuiet) {
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::timeout);
+  EXPECT_TRUE(driver_->ready());
+  EXPECT_EQ(driver_->latch(3, now_), SendStatus::accepted);
+}
+
+TEST_F(ModbusDriverTest, ALineThatIsNeverQuietIsUsedAllTheSame) {
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::garbled);
+  for (int i = 0; i < 9; ++i) {
+    port_.unread = true;
+    now_ += milliseconds(20);
+    step();
+    ASSERT_EQ(driver_->ask(kTwo, now_), SendStatus::busy) << i;
+  }
+  port_.unread = true;
+  now_ += milliseconds(20);
+  step();
+  EXPECT_EQ(driver_->ask(kTwo, now_), SendStatus::accepted);
+}
+
+TEST_F(ModbusDriverTest, WhatNobodyWaitsForIsThrownAwayBeforeEachRequestToAUnit) {
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  EXPECT_EQ(port_.discards, 1);
+  answer(Outcome::ok, {0, 0, 0, 0, 0, 0});
+  ASSERT_EQ(driver_->latch(1, now_), SendStatus::accepted);
+  EXPECT_EQ(port_.discards, 1) << "a broadcast hears nothing";
+}
+
+TEST_F(ModbusDriverTest, NoQuestionIsOfTheLengthOfOneThatIsOpen) {
+  const auto ask = [&](const NodeAddress& node) {
+    EXPECT_EQ(driver_->ask(node, now_), SendStatus::accepted);
+    return int{port_.sent.back().count};
+  };
+  const auto leave_open = [&] {
+    answer(Outcome::timeout);
+    now_ += milliseconds(20);
+    step();
+  };
+  for (int length = 6; length >= 1; --length) {
+    EXPECT_EQ(ask(kOne), length);
+    leave_open();
+  }
+  EXPECT_EQ(ask(kTwo), 6) << "each node has its own";
+  answer(Outcome::ok, std::vector<std::uint16_t>(6));
+  const std::size_t sent = port_.sent.size();
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  step();
+  EXPECT_EQ(port_.sent.size(), sent) << "no answer could be told from an old one";
+  EXPECT_EQ(log_.count(Kind::missed), 7U);
+  now_ += milliseconds(1000);
+  EXPECT_EQ(ask(kOne), 6) << "after a second of silence nothing old will come";
+  answer(Outcome::ok, std::vector<std::uint16_t>(6));
+  EXPECT_EQ(log_.count(Kind::showing), 2U);
+}
+
+TEST_F(ModbusDriverTest, AnAnswerThatOnlyShowsThatTheNodeIsBackIsFollowedByTheWholeQuestion) {
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+    answer(Outcome::timeout);
+    now_ += milliseconds(20);
+    step();
+  }
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  ASSERT_EQ(port_.sent.back().count, 3);
+  answer(Outcome::ok, {0x0500, 1, 1});
+  EXPECT_EQ(log_.count(Kind::showing), 0U);
+  ASSERT_EQ(port_.sent.size(), 5U);
+  EXPECT_EQ(port_.sent.back().count, 6);
+  answer(Outcome::ok, {0x0500, 1, 1, 1, 1, 1});
+  EXPECT_EQ(log_.count(Kind::showing), 1U);
+  EXPECT_TRUE(driver_->ready());
+}
+
+TEST_F(ModbusDriverTest, AReceiptFromANodeThatOwesAnAnswerIsReadBack) {
+  const auto read_back = [&](std::uint16_t sequences) {
+    ASSERT_EQ(driver_->preload(kOne, 9, kFour, now_), SendStatus::accepted);
+    answer(Outcome::timeout);
+    now_ += milliseconds(20);
+    step();
+    ASSERT_EQ(driver_->preload(kOne, 9, kFour, now_), SendStatus::accepted);
+    answer(Outcome::ok);
+    EXPECT_EQ(log_.count(Kind::preloaded), 0U) << "it may be the receipt of the one before";
+    EXPECT_FALSE(driver_->ready());
+    ASSERT_EQ(port_.sent.back().function, 3);
+    std::vector<std::uint16_t> status(port_.sent.back().count);
+    status[0] = sequences;
+    answer(Outcome::ok, status);
+  };
+  read_back(0x0508);
+  EXPECT_EQ(log_.count(Kind::preloaded), 0U) << "8 is pending";
+  EXPECT_EQ(log_.count(Kind::missed), 2U);
+  read_back(0x0509);
+  ASSERT_EQ(log_.count(Kind::preloaded), 1U);
+  EXPECT_EQ(log_.last(Kind::preloaded)->sequence, 9);
+  EXPECT_EQ(log_.count(Kind::showing), 0U);
+  ASSERT_EQ(driver_->preload(kOne, 10, kFour, now_), SendStatus::accepted);
+  answer(Outcome::ok);
+  EXPECT_EQ(log_.count(Kind::preloaded), 2U) << "nothing is owed any more";
+}
+
+TEST_F(ModbusDriverTest, ARefusalByANodeThatOwesAnAnswerMayBeOfSomethingElse) {
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::timeout);
+  now_ += milliseconds(20);
+  step();
+  ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
+  answer(Outcome::exception, {}, 3);
+  EXPECT_EQ(log_.count(Kind::rejected), 0U);
+  EXPECT_EQ(log_.count(Kind::missed), 2U);
+}
+
+TEST_F(ModbusDriverTest, WithoutASequenceAReceiptIsTakenForWhatItIs) {
+  ModbusProfile profile = modbus::footlight_marker();
+  profile.has_preload_sequence = false;
+  use(profile);
+  ASSERT_EQ(driver_->preload(kOne, 9, kFour, now_), SendStatus::accepted);
+  answer(Outcome::timeout);
+  now_ += milliseconds(20);
+  step();
+  ASSERT_EQ(driver_->preload(kOne, 9, kFour, now_), SendStatus::accepted);
+  answer(Outcome::ok);
+  EXPECT_EQ(log_.count(Kind::preloaded), 1U);
 }
 
 TEST_F(ModbusDriverTest, ExceptionFourIsTriedOnceMore) {
@@ -74,15 +235,19 @@ TEST_F(ModbusDriverTest, WrongUnitFunctionOrLengthIsMissed) {
     ASSERT_EQ(driver_->ask(kOne, now_), SendStatus::accepted);
     port_.reply = std::move(reply);
     step();
+    now_ += milliseconds(20);
+    step();
   };
   const std::vector<std::uint16_t> status{0x0100, 2, 1, 4, 5, 6};
   ask_and_hear({Outcome::ok, 2, 3, 0, status});
   ask_and_hear({Outcome::ok, 1, 16, 0, status});
-  ask_and_hear({Outcome::ok, 1, 3, 0, {0x0100, 2, 1, 4, 5}});
+  ask_and_hear({Outcome::ok, 1, 3, 0, status});
+  EXPECT_EQ(log_.count(Kind::missed), 3U) << "of the length of a question before";
   ask_and_hear({Outcome::ok, 1, 3, 0, {}});
   ask_and_hear({Outcome::garbled, 1, 3, 0, {}});
   EXPECT_EQ(log_.count(Kind::missed), 5U);
   EXPECT_EQ(log_.events.size(), 5U);
+  now_ += milliseconds(1000);
   ask_and_hear({Outcome::ok, 1, 3, 0, status});
   EXPECT_EQ(log_.count(Kind::showing), 1U);
 }

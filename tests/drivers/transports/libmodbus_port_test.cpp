@@ -9,6 +9,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include "core/file_descriptor.hpp"
 #include "core/look.hpp"
 #include "drivers/devices/modbus/marker_registers.hpp"
 #include "drivers/transports/modbus_port.hpp"
@@ -22,6 +23,7 @@ using Bytes = std::vector<std::uint8_t>;
 using Outcome = ModbusReply::Outcome;
 
 constexpr int kBaud = 115'200;
+const SerialSettings kSettings{.bits_per_second = kBaud, .characters = Characters::e1};
 const ModbusRequest kRead{7, 0x03, 0x40, 2, {}};
 
 /// The answer of unit 7 to kRead with the registers 0x0102, 0x0304; check sums by hand with golden.py's function.
@@ -39,7 +41,7 @@ using Mapping = std::unique_ptr<modbus_mapping_t, FreeMapping>;
 class RtuPort : public ::testing::Test {
  protected:
   RtuPort() {
-    auto opened = open_modbus_rtu(terminal_.path(), kBaud);
+    auto opened = open_modbus_rtu(terminal_.path(), kSettings);
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     port_ = std::move(opened).value();
   }
@@ -97,15 +99,22 @@ TEST_F(RtuPort, SilenceIsATimeOut) {
   EXPECT_TRUE(reply->values.empty());
 }
 
-TEST_F(RtuPort, ALateAnswerIsNotTakenForTheNextOne) {
+TEST_F(RtuPort, ThrowsAwayWhatNobodyWaitsForWhenToldTo) {
   ASSERT_EQ(exchange(kRead, {})->outcome, Outcome::timeout);
-  Bytes late = kReadAnswer;
-  late = {0x07, 0x03, 0x04, 0x0B, 0xAD, 0x0B, 0xAD, 0xC9, 0x7B};
+  EXPECT_FALSE(port_->discard());
+  const Bytes late{0x07, 0x03, 0x04, 0x0B, 0xAD, 0x0B, 0xAD, 0xC9, 0x7B};
   terminal_.write(late);
+  EXPECT_TRUE(port_->discard());
+  EXPECT_FALSE(port_->discard());
   const auto reply = exchange(kRead, kReadAnswer);
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->outcome, Outcome::ok);
   EXPECT_EQ(reply->values, (std::vector<std::uint16_t>{0x0102, 0x0304}));
+}
+
+TEST_F(RtuPort, KnowsAnAnswerOfAnotherLengthForWrong) {
+  const Bytes of_one{0x07, 0x03, 0x02, 0x01, 0x02, 0x31, 0x95};
+  EXPECT_EQ(exchange(kRead, of_one)->outcome, Outcome::garbled);
 }
 
 TEST_F(RtuPort, AWrongCheckSumOrUnitIsGarbled) {
@@ -149,12 +158,17 @@ TEST_F(RtuPort, SpeaksToAServerOfLibmodbus) {
   device.join();
 }
 
+TEST_F(RtuPort, AnotherProgramDoesNotGetTheLine) {
+  if (::getuid() == 0) GTEST_SKIP() << "root gets everything";
+  EXPECT_FALSE(open_modbus_rtu(terminal_.path(), kSettings));
+}
+
 TEST(RtuLine, OneThatIsNotThereIsRefusedWithWhatWouldHelp) {
-  const auto port = open_modbus_rtu("/dev/serial/by-id/none", kBaud);
+  const auto port = open_modbus_rtu("/dev/serial/by-id/none", kSettings);
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().message,
-            "Modbus line \"/dev/serial/by-id/none\": not opened: No such file or directory (a port as listed in "
-            "/dev/serial/by-id, and membership of the group dialout)");
+            "serial port \"/dev/serial/by-id/none\": No such file or directory (a port as listed in "
+            "/dev/serial/by-id)");
 }
 
 /// A Modbus TCP server of libmodbus on a free port of the loopback; serves one connection after the other.
@@ -251,17 +265,83 @@ TEST(TcpPort, AConnectionThatIsLostIsDownOnceAndMadeAnew) {
   EXPECT_EQ((*port)->poll()->outcome, Outcome::ok);
 }
 
-TEST(TcpPort, ADeviceThatIsSwitchedOffIsRefusedWithWhatWouldHelp) {
+TEST(TcpPort, ADeviceThatIsSwitchedOffIsDownAndSaysWhatWouldHelp) {
   int closed_port = 0;
   {
     const TcpServer server;
     closed_port = server.port();
   }
   const auto port = open_modbus_tcp("127.0.0.1", closed_port, {1});
-  ASSERT_FALSE(port);
-  EXPECT_EQ(port.error().message, "Modbus device \"127.0.0.1:" + std::to_string(closed_port) +
-                                      "\": not opened: Connection refused (a device that is switched on and reached by "
-                                      "this network)");
+  ASSERT_TRUE(port) << "it may be switched on later";
+  EXPECT_EQ((*port)->submit({1, 0x03, 0, 1, {}}), SendStatus::down);
+  EXPECT_EQ((*port)->trouble(), "Modbus device \"127.0.0.1:" + std::to_string(closed_port) +
+                                    "\": not opened: Connection refused (a device that is switched on and reached by "
+                                    "this network)");
+}
+
+/// Takes connections and never answers.
+class DeafHost {
+ public:
+  DeafHost() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t length = sizeof address;
+    EXPECT_EQ(::bind(listener_.get(), reinterpret_cast<sockaddr*>(&address), length), 0);
+    EXPECT_EQ(::listen(listener_.get(), 64), 0);
+    EXPECT_EQ(::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &length), 0);
+    port_ = ntohs(address.sin_port);
+  }
+  [[nodiscard]] int port() const { return port_; }
+  /// True when somebody has tried to connect.
+  [[nodiscard]] bool called() const {
+    pollfd file{listener_.get(), POLLIN, 0};
+    return ::poll(&file, 1, 0) > 0;
+  }
+
+ private:
+  FileDescriptor listener_;
+  int port_ = 0;
+};
+
+TEST(TcpPort, OpeningWaitsForNobody) {
+  const DeafHost deaf;
+  const auto port = open_modbus_tcp("127.0.0.1", deaf.port(), {1});
+  ASSERT_TRUE(port);
+  EXPECT_FALSE(deaf.called()) << "the bus's own thread connects";
+  EXPECT_EQ((*port)->submit({1, 0x03, 0, 1, {}}), SendStatus::accepted);
+  EXPECT_TRUE(deaf.called());
+  EXPECT_EQ((*port)->poll()->outcome, Outcome::timeout);
+}
+
+TEST(TcpPort, ADeadHostDelaysNoOther) {
+  // In order of events: an exchange with the living begins and ends while one and the same request to the dead waits.
+  const DeafHost deaf;
+  const TcpServer server;
+  auto dead = open_modbus_tcp("127.0.0.1", deaf.port(), {1});
+  auto living = open_modbus_tcp("127.0.0.1", server.port(), {1});
+  std::atomic<int> begun{0};
+  std::atomic<int> ended{0};
+  std::atomic<bool> enough{false};
+  std::thread other_bus([&] {
+    while (!enough) {
+      ++begun;
+      (*dead)->submit({1, 0x03, 0, 1, {}});
+      (*dead)->poll();
+      ++ended;
+    }
+  });
+  bool meanwhile = false;
+  for (int tries = 0; tries < 100 && !meanwhile; ++tries) {
+    const int before = ended;
+    while (begun == before) std::this_thread::yield();
+    EXPECT_EQ((*living)->submit({1, 0x03, 0, 1, {}}), SendStatus::accepted);
+    EXPECT_EQ((*living)->poll()->outcome, Outcome::ok);
+    meanwhile = ended == before;
+  }
+  enough = true;
+  other_bus.join();
+  EXPECT_TRUE(meanwhile);
 }
 
 }  // namespace

@@ -16,6 +16,12 @@ TEST(ModbusTiming, CharactersHaveElevenBitsAndSilenceIsThreeAndAHalf) {
   EXPECT_EQ(rtu_silence(115'200), microseconds(1750)) << "fixed above 19,200 Bd";
 }
 
+TEST(ModbusTiming, WithoutParityACharacterIsABitShorter) {
+  EXPECT_EQ(rtu_silence(9'600, 10), Duration(3'645'834));
+  EXPECT_EQ(rtu_silence(115'200, 10), microseconds(1750));
+  EXPECT_EQ(rtu_wire_time(write_of(3, 0), 100'000, 10), microseconds(1500 + 1750));
+}
+
 TEST(ModbusTiming, FramesHaveTheirLength) {
   EXPECT_EQ(rtu_request_bytes(write_of(17)), 43U);
   EXPECT_EQ(rtu_reply_bytes(write_of(17)), 8U);
@@ -35,7 +41,7 @@ TEST(ModbusTiming, ABroadcastHasNoAnswer) {
 
 #if !FOOTLIGHT_WITH_libmodbus
 TEST(ModbusPort, SaysThatItWasBuiltWithoutItsLibrary) {
-  EXPECT_EQ(open_modbus_rtu("/dev/ttyS9", 19'200).error().message,
+  EXPECT_EQ(open_modbus_rtu("/dev/ttyS9", SerialSettings{}).error().message,
             "Modbus line \"/dev/ttyS9\": this program was built without libmodbus (install libmodbus-dev and build "
             "again)");
   EXPECT_EQ(open_modbus_tcp("marker", 502, {1}).error().message,

@@ -46,7 +46,7 @@ SerialStream narrow_stream(NarrowDevice::Wire& wire) {
     if (wire.gone) return device_error("gone");
     return std::unique_ptr<SerialDevice>(std::make_unique<NarrowDevice>(wire));
   };
-  return {std::make_unique<NarrowDevice>(wire), open, 115'200};
+  return {std::make_unique<NarrowDevice>(wire), open, SerialSettings{}};
 }
 
 TEST(SerialStream, TakesAFrameAsAWholeThoughTheDeviceTakesItInParts) {
@@ -98,15 +98,31 @@ TEST(SerialStream, IsPolledByItsDeviceUntilThatIsGone) {
   EXPECT_EQ(stream.poll_handle(), -1);
 }
 
-TEST(SerialStream, TenBitsACharacter) {
+TEST(SerialStream, TenBitsACharacterAndElevenWithParity) {
   NarrowDevice::Wire wire;
   EXPECT_EQ(narrow_stream(wire).wire_time(11'520), seconds(1));
   EXPECT_EQ(narrow_stream(wire).wire_time(1), Duration(86'806)) << "rounded up";
+  EXPECT_EQ((SerialSettings{.bits_per_second = 110'000, .characters = Characters::o1}).time_of(10'000), seconds(1));
+}
+
+TEST(SerialStream, SaysWhyItIsDownUntilItIsUp) {
+  NarrowDevice::Wire wire;
+  wire.room = 10;
+  SerialStream stream = narrow_stream(wire);
+  EXPECT_EQ(stream.trouble(), "");
+  wire.gone = true;
+  EXPECT_EQ(stream.write(Bytes{1}), SendStatus::down);
+  EXPECT_EQ(stream.trouble(), "unplugged");
+  EXPECT_EQ(stream.write(Bytes{1}), SendStatus::down);
+  EXPECT_EQ(stream.trouble(), "gone") << "what opening it again says";
+  wire.gone = false;
+  EXPECT_EQ(stream.write(Bytes{1}), SendStatus::accepted);
+  EXPECT_EQ(stream.trouble(), "");
 }
 
 TEST(SerialPort, BytesPassBothWaysThroughAPseudoTerminalUnchanged) {
   PseudoTerminal terminal;
-  auto stream = open_serial(terminal.path(), 115'200);
+  auto stream = open_serial(terminal.path(), SerialSettings{});
   ASSERT_TRUE(stream) << stream.error().message;
   Bytes all(256);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint8_t>(i);  // XON, ^C, CR among them
@@ -125,7 +141,7 @@ TEST(SerialPort, BytesPassBothWaysThroughAPseudoTerminalUnchanged) {
 
 TEST(SerialPort, APulledCableIsDown) {
   PseudoTerminal terminal;
-  auto stream = open_serial(terminal.path(), 115'200);
+  auto stream = open_serial(terminal.path(), SerialSettings{});
   ASSERT_TRUE(stream);
   terminal.unplug();
   Bytes buffer(16);
@@ -136,7 +152,7 @@ TEST(SerialPort, APulledCableIsDown) {
 TEST(SerialPort, TheDriverSpeaksToAMarkerBehindAPseudoTerminal) {
   using footlight_serial::Frame;
   PseudoTerminal terminal;
-  auto stream = open_serial(terminal.path(), 115'200);
+  auto stream = open_serial(terminal.path(), SerialSettings{});
   ASSERT_TRUE(stream);
   const NodeAddress node{NodeIndex(0), 7, 3};
   SerialDriver driver(**stream, {node}, 0xA3);
@@ -168,7 +184,7 @@ TEST(SerialPort, TheDriverSpeaksToAMarkerBehindAPseudoTerminal) {
 }
 
 std::string refusal_of(const std::string& path) {
-  const auto stream = open_serial(path, 115'200);
+  const auto stream = open_serial(path, SerialSettings{});
   return stream ? "" : stream.error().message;
 }
 
