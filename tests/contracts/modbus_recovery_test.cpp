@@ -57,7 +57,7 @@ class OpenLine {
   OpenLine(const sim::Faults& faults, std::uint64_t seed)
       : bus_(rig_.buses[0], {world_, trace_, {faults, Rng(seed)}, {faults, Rng(seed + 1)}}) {
     for (const Node& node : rig_.nodes) {
-      bus_.add(std::make_unique<sim::SimulatedNode>(node, "b", true, false, world_, trace_));
+      bus_.add(std::make_unique<sim::SimulatedNode>(node, "b", sim::NodeModel(kChannels, true), false, world_, trace_));
     }
     bus_.begin();
   }
@@ -246,7 +246,8 @@ TEST(ModbusRecovery, WhoTakesEveryReceiptForHisOwnIsDeceivedOnTheSameLine) {
     line.watch(slot);
     line.port().submit(drivers::modbus::preload(drivers::modbus::footlight_marker(),
                                                 static_cast<std::uint8_t>(slot + 1), kPlanByte, sequence,
-                                                looks_of(slot, sequence)));
+                                                looks_of(slot, sequence))
+                           .front());
     while (line.port().busy()) line.advance(kNever);
     const auto reply = line.port().poll();
     const bool told = reply && reply->outcome == ModbusReply::Outcome::ok;

@@ -280,7 +280,7 @@ TEST_P(ModbusPortContract, TheDriverLightsBothMarkersAndReadsThemBack) {
   for (const NodeAddress& node : {one, two}) {
     ASSERT_EQ(driver.ask(node, now), SendStatus::accepted);
     ASSERT_TRUE(finish());
-    ASSERT_EQ(bench_->shown(node.address), 9);
+    ASSERT_EQ(bench_->shown(node.unit()), 9);
     const DeviceEvent* showing = log.last(DeviceEvent::Kind::showing);
     ASSERT_NE(showing, nullptr);
     EXPECT_EQ(showing->node, node.node);

@@ -20,8 +20,8 @@ std::string word_in(const std::string& file) {
 
 GpioChip::GpioChip() {
   const std::string config = kConfig;
-  run("mkdir -p " + config + "/bank && echo " + std::to_string(kLines) + " > " + config + "/bank/num_lines && echo 1 > " +
-      config + "/live");
+  run("mkdir -p " + config + "/bank && echo " + std::to_string(kLines) + " > " + config +
+      "/bank/num_lines && echo 1 > " + config + "/live");
   name_ = word_in(config + "/bank/chip_name");
   folder_ = "/sys/devices/platform/" + word_in(config + "/dev_name") + "/" + name_;
   eventually([&] { return std::ifstream("/dev/" + name_).good(); });

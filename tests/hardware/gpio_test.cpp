@@ -90,7 +90,8 @@ TEST_F(GpioSim, MoreEdgesThanTheKernelKeepsEndAtTheLevelThatIs) {
   EXPECT_EQ(all(go, instant_at(1)), std::vector{Event::pressed});
   for (double now_s = 1.05; now_s < 1.2; now_s += 0.05) EXPECT_TRUE(all(go, instant_at(now_s)).empty());
   chip_.pull(0, true);
-  EXPECT_EQ(all(go, instant_at(1.3)), std::vector{Event::pressed}) << "it has been at rest, though that edge was dropped";
+  EXPECT_EQ(all(go, instant_at(1.3)), std::vector{Event::pressed})
+      << "it has been at rest, though that edge was dropped";
 }
 
 TEST_F(GpioSim, AStuckGoIsOffAndTheOtherInputsLive) {

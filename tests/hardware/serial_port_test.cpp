@@ -92,8 +92,9 @@ TEST_F(Ftdi, CarriesEveryByteBothWaysAtSpeedsThatNoTableHas) {
 TEST_F(Ftdi, RefusesASpeedThatItCannotDo) {
   const auto opened = drivers::open_serial(kHere, {.bits_per_second = 3'999'000});
   ASSERT_FALSE(opened);
-  EXPECT_TRUE(opened.error().message.starts_with("serial port \"/dev/ttyUSB0\": 3999000 Bd refused: the nearest that it "
-                                                 "can do is "))
+  EXPECT_TRUE(
+      opened.error().message.starts_with("serial port \"/dev/ttyUSB0\": 3999000 Bd refused: the nearest that it "
+                                         "can do is "))
       << opened.error().message;
 }
 
@@ -200,8 +201,9 @@ TEST_F(Ftdi, UnpluggedUnderModbusIsDownAndComesBack) {
 class Uart8250 : public ::testing::Test {
  protected:
   Uart8250() {
-    std::istringstream names(run("for t in /sys/class/tty/ttyS*; do case $(readlink -f $t/device) in *pci*) basename $t;; "
-                                 "esac; done"));
+    std::istringstream names(
+        run("for t in /sys/class/tty/ttyS*; do case $(readlink -f $t/device) in *pci*) basename $t;; "
+            "esac; done"));
     for (std::string name; names >> name;) places_.push_back("/dev/" + name);
   }
   static int modem_lines(const std::string& path) {
@@ -253,7 +255,8 @@ TEST_F(Uart8250, AKernelDriverThatCannotTurnSaysWhatCould) {
   ASSERT_EQ(places_.size(), 2U);
   const auto opened = drivers::open_serial(places_[0], turned_by(LineDirection::kernel));
   if (opened) return;  // this one can
-  EXPECT_TRUE(opened.error().message.ends_with("(direction: rts or gpio, or adapter where the adapter does it by itself)"))
+  EXPECT_TRUE(
+      opened.error().message.ends_with("(direction: rts or gpio, or adapter where the adapter does it by itself)"))
       << opened.error().message;
 }
 

@@ -241,7 +241,8 @@ Instant ModbusDriver::step(Instant now, EventSink& events) {
     if (!reply && !broadcast_over) return expected_ > now ? expected_ : now + kPollInterval;
     const Job job = *std::exchange(under_way_, std::nullopt);
     if (reply && job.request.unit != kBroadcast) finish(job, *reply, now, events);
-    const bool wrote = job.purpose != Purpose::status && job.purpose != Purpose::read_back && job.purpose != Purpose::looks;
+    const bool wrote =
+        job.purpose != Purpose::status && job.purpose != Purpose::read_back && job.purpose != Purpose::looks;
     if (profile_.pause_after_write > Duration{} && wrote) {
       paused_ = true;
       pause_until_ = now + profile_.pause_after_write;

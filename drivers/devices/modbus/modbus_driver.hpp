@@ -26,8 +26,8 @@ namespace footlight::drivers {
 /// `upload_look` sends nothing, and a device with numbers of its own is told the nearest of them. A device that knows
 /// no broadcast gets everything node by node.
 ///
-/// Exceptions: 1-3, 7, 8 are `rejected`, never to be sent again; 4 is tried once more first; 5 and 6 are `rejected` until
-/// later; 10 and 11 are a gateway's word for `missed`. An answer of another unit, function or length is `missed`.
+/// Exceptions: 1-3, 7, 8 are `rejected`, never to be sent again; 4 is tried once more first; 5 and 6 are `rejected`
+/// until later; 10 and 11 are a gateway's word for `missed`. An answer of another unit, function or length is `missed`.
 ///
 /// Late answers. RTU has nothing to tell them by, so an answer that comes after its time-out would be taken for the
 /// answer to the next request, and every later one with it. Therefore

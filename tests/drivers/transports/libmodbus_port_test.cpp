@@ -4,9 +4,11 @@
 #include <memory>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "core/file_descriptor.hpp"
@@ -158,9 +160,15 @@ TEST_F(RtuPort, SpeaksToAServerOfLibmodbus) {
   device.join();
 }
 
-TEST_F(RtuPort, AnotherProgramDoesNotGetTheLine) {
-  if (::getuid() == 0) GTEST_SKIP() << "root gets everything";
-  EXPECT_FALSE(open_modbus_rtu(terminal_.path(), kSettings));
+TEST_F(RtuPort, TheLineIsOursAlone) {
+  const FileDescriptor another(::open(terminal_.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK));
+  if (another.get() < 0) {
+    EXPECT_EQ(errno, EBUSY);
+    return;
+  }
+  int exclusive = 0;  // root gets everything, but is told
+  ASSERT_EQ(::ioctl(another.get(), TIOCGEXCL, &exclusive), 0);
+  EXPECT_EQ(exclusive, 1);
 }
 
 TEST(RtuLine, OneThatIsNotThereIsRefusedWithWhatWouldHelp) {
