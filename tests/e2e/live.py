@@ -198,7 +198,7 @@ def make_cases(Case, footlight, program):
             self.make_show()
             _, said = footlight("run", self.show, "--go", status=4)
             self.assertIn('bus "left": serial port "/dev/nowhere": No such file or directory', said)
-            self.assertIn('bus "middle": Modbus line "/dev/nowhere": not opened: No such file or directory', said)
+            self.assertIn('bus "middle": serial port "/dev/nowhere": No such file or directory', said)
             with open(self.path("s", "rig.yaml")) as f:
                 rig = f.read()
             with open(self.path("s", "rig.yaml"), "w") as f:
