@@ -58,7 +58,8 @@ PreloadRun preload_all(BusKind kind, int bits_per_second, int nodes, int channel
   Rig rig;
   rig.buses.push_back({"b", kind, "sim://b", bits_per_second, std::nullopt, {}});
   for (int i = 1; i <= nodes; ++i) {
-    rig.nodes.push_back({"n" + std::to_string(i), BusIndex(0), i, std::vector<Channel>(static_cast<std::size_t>(channels)), {}});
+    rig.nodes.push_back(
+        {"n" + std::to_string(i), BusIndex(0), i, std::vector<Channel>(static_cast<std::size_t>(channels)), {}});
   }
   ManualClock clock;
   std::ostringstream trace;

@@ -8,10 +8,10 @@ namespace footlight::contracts {
 
 /// The looks of all nodes of one simulated bus, preloaded once by its driver, in virtual time.
 struct PreloadRun {
-  int receipts = 0;      ///< nodes that have taken theirs
-  Duration elapsed{};    ///< from the first byte until the last receipt is understood
-  Duration on_wire{};    ///< characters of requests and receipts
-  Duration allowed{};    ///< those, and the silences and turnarounds as they happened: nobody could do it in less
+  int receipts = 0;    ///< nodes that have taken theirs
+  Duration elapsed{};  ///< from the first byte until the last receipt is understood
+  Duration on_wire{};  ///< characters of requests and receipts
+  Duration allowed{};  ///< those, and the silences and turnarounds as they happened: nobody could do it in less
   /// Share of the time that nobody could have saved.
   [[nodiscard]] double efficiency() const { return seconds_in(allowed) / seconds_in(elapsed); }
   /// Share of the time in which there were bits on the line.

@@ -288,7 +288,8 @@ void ModbusDriver::finish(const Job& job, const ModbusReply& reply, Instant now,
   if (job.purpose == Purpose::service) {
     ModbusReply service = reply;
     if (!same && reply.outcome != ModbusReply::Outcome::timeout) service.outcome = ModbusReply::Outcome::garbled;
-    if (service.outcome != ModbusReply::Outcome::ok && service.outcome != ModbusReply::Outcome::exception) begin_quiet(now);
+    if (service.outcome != ModbusReply::Outcome::ok && service.outcome != ModbusReply::Outcome::exception)
+      begin_quiet(now);
     return finish_service(job, service, events);
   }
   const bool question = job.purpose == Purpose::status || job.purpose == Purpose::read_back;

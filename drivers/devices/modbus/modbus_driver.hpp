@@ -132,12 +132,12 @@ class ModbusDriver final : public Driver {
   std::vector<NodeAddress> nodes_;
   std::uint8_t plan_byte_;
   std::map<NodeIndex, Known> known_;
-  std::map<NodeIndex, Kept> kept_;                           ///< profiles without a latch
-  std::map<NodeIndex, Written> pending_;                     ///< preloaded, not latched: values read back
-  std::map<NodeIndex, Written> written_;                     ///< latched: what a reading should give
-  std::array<Look, 256> looks_;                              ///< as uploaded
-  std::vector<DeviceEvent> due_;                             ///< told by the next step
-  std::optional<ServiceAnswer> service_;                     ///< a technician's request under way
+  std::map<NodeIndex, Kept> kept_;        ///< profiles without a latch
+  std::map<NodeIndex, Written> pending_;  ///< preloaded, not latched: values read back
+  std::map<NodeIndex, Written> written_;  ///< latched: what a reading should give
+  std::array<Look, 256> looks_;           ///< as uploaded
+  std::vector<DeviceEvent> due_;          ///< told by the next step
+  std::optional<ServiceAnswer> service_;  ///< a technician's request under way
   std::optional<Job> under_way_;
   std::deque<Job> jobs_;  ///< the rest of an operation, a second try, a read-back
   bool paused_ = false;   ///< the device wants time after a write
