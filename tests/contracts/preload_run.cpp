@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "controller/bus_loop.hpp"
 #include "core/check.hpp"
 #include "core/clock.hpp"
 #include "drivers/registry.hpp"
@@ -14,53 +15,85 @@
 namespace footlight::contracts {
 namespace {
 
-class ReceiptCount final : public drivers::EventSink {
- public:
-  void on_event(const drivers::DeviceEvent& event) override {
-    receipts += event.kind == drivers::DeviceEvent::Kind::preloaded ? 1 : 0;
+using controller::BusTarget;
+using controller::CueSchedule;
+
+constexpr std::size_t kLeastPreload = 40;  // bytes; every other request is shorter
+
+Rig rig_of(BusKind kind, int bits_per_second, int nodes) {
+  Rig rig;
+  rig.buses.push_back({"b", kind, "sim://b", bits_per_second, std::nullopt, {}});
+  for (int i = 1; i <= nodes; ++i) {
+    rig.nodes.push_back({"n" + std::to_string(i), BusIndex(0), i, std::vector<Channel>(kChannelsPerNode), {}});
   }
-  int receipts = 0;
+  return rig;
+}
+
+/// Two switches, the second by GO.
+CueSchedule schedule_of(int nodes) {
+  std::vector<Look> looks(3, Look{{9, 9, 9}, Effect::steady, 255});
+  std::vector<controller::Switch> switches{{kStart, "first", false, std::nullopt},
+                                           {kStart + seconds(1'000), "second", false, std::nullopt}};
+  std::vector<LookIndex> table;
+  for (const LookIndex look : {LookIndex{1}, LookIndex{2}}) {
+    table.insert(table.end(), static_cast<std::size_t>(nodes) * kChannelsPerNode, look);
+  }
+  return CueSchedule(std::move(looks), std::move(switches), static_cast<std::size_t>(nodes), std::move(table), 0, {});
+}
+
+/// One frame of the trace.
+struct Heard {
+  char direction = ' ';
+  Instant end;
+  std::size_t bytes = 0;
 };
 
-/// What the trace says of the wire: characters and pauses between a request and its receipt, and silences.
-void read_trace(const std::string& trace, const Bus& bus, PreloadRun& run) {
+std::vector<Heard> frames_in(const std::string& trace) {
+  std::vector<Heard> frames;
+  std::istringstream lines(trace);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    double now_us = 0;
+    std::string bus;
+    std::string hex;
+    Heard frame;
+    words >> now_us >> bus >> frame.direction >> hex;
+    frame.end = kStart + seconds(now_us * 1e-6);
+    frame.bytes = hex.size() / 2;
+    if (frame.direction == '>' || frame.direction == '<') frames.push_back(frame);
+  }
+  return frames;
+}
+
+PreloadRun measure(const std::vector<Heard>& frames, const Bus& bus) {
   const auto time_of = [&](std::size_t characters) {
     const auto bits = static_cast<Duration::rep>(characters) * bus.bits_per_character();
     return Duration(bits * 1'000'000'000 / bus.bits_per_second);
   };
   const bool rtu = bus.kind == BusKind::modbus_rtu;
   const Duration silence = rtu ? drivers::rtu_silence(bus.bits_per_second, bus.bits_per_character()) : Duration{};
-  std::istringstream lines(trace);
-  std::string line;
-  Duration request_end{};
-  while (std::getline(lines, line)) {
-    std::istringstream words(line);
-    double microseconds_now = 0;
-    std::string name;
-    std::string direction;
-    std::string hex;
-    words >> microseconds_now >> name >> direction >> hex;
-    if (direction != ">" && direction != "<") continue;
-    const Duration characters = time_of(hex.size() / 2);
-    const Duration end = seconds(microseconds_now * 1e-6);
-    run.on_wire += characters;
-    run.allowed += characters + silence;
-    if (direction == ">") request_end = end;
-    // The node's pause from the last bit of the request; the silence after that is a part of it.
-    if (direction == "<") run.allowed += end - characters - request_end - silence;
+  PreloadRun run;
+  Instant begin = kNever;
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
+    const Heard& preload = frames[i];
+    const Heard& receipt = frames[i + 1];
+    if (preload.direction != '>' || preload.bytes < kLeastPreload || receipt.direction != '<') continue;
+    const Duration asking = time_of(preload.bytes);
+    // From the last bit of the preload to that of the receipt: the node's pause, of which the silence is a part.
+    const Duration answering = receipt.end - preload.end;
+    begin = std::min(begin, preload.end - asking);
+    run.elapsed = receipt.end - begin;
+    run.on_wire += asking + time_of(receipt.bytes);
+    run.allowed += (run.receipts == 0 ? Duration{} : silence) + asking + answering;
+    ++run.receipts;
   }
-  run.allowed -= silence;  // nobody waits for the last one
+  return run;
 }
 
 }  // namespace
 
-PreloadRun preload_all(BusKind kind, int bits_per_second, int nodes, int channels) {
-  Rig rig;
-  rig.buses.push_back({"b", kind, "sim://b", bits_per_second, std::nullopt, {}});
-  for (int i = 1; i <= nodes; ++i) {
-    rig.nodes.push_back(
-        {"n" + std::to_string(i), BusIndex(0), i, std::vector<Channel>(static_cast<std::size_t>(channels)), {}});
-  }
+PreloadRun preload_all(BusKind kind, int bits_per_second, int nodes) {
+  const Rig rig = rig_of(kind, bits_per_second, nodes);
   ManualClock clock;
   std::ostringstream trace;
   sim::SimulatedRig simulated(rig, {}, 1, clock, &trace);
@@ -73,21 +106,21 @@ PreloadRun preload_all(BusKind kind, int bits_per_second, int nodes, int channel
   }
   const auto addresses = drivers::node_addresses(rig, BusIndex(0));
   auto driver = drivers::make_driver(rig.buses[0], addresses, 0xA3, port).value();
-  ReceiptCount count;
-  for (const drivers::NodeAddress& address : addresses) {
-    const std::vector<LookIndex> looks(address.channels, LookIndex{7});
-    FL_CHECK(driver->preload(address, 1, looks, clock.now()) == drivers::SendStatus::accepted);
-    while (true) {
-      const Instant wish = driver->step(clock.now(), count);
-      if (driver->ready()) break;
-      simulated.advance_to(std::min(wish, simulated.next_event()));
-    }
+  const CueSchedule schedule = schedule_of(nodes);
+  controller::BusLoop loop(schedule, addresses, *driver);
+  BusTarget target;
+  const auto step = [&] {
+    const Instant wish = loop.step(clock.now(), target);
+    simulated.advance_to(std::max(clock.now(), std::min(wish, simulated.next_event())));
+  };
+  while (!loop.settled()) {
+    step();
+    FL_CHECK(clock.now() < kStart + seconds(500));
   }
-  PreloadRun run;
-  run.receipts = count.receipts;
-  run.elapsed = clock.now() - kStart;
-  read_trace(trace.str(), rig.buses[0], run);
-  return run;
+  trace.str("");
+  target.next = 1;  // at a GO that does not come
+  for (const Instant end = clock.now() + seconds(20); clock.now() < end;) step();
+  return measure(frames_in(trace.str()), rig.buses[0]);
 }
 
 }  // namespace footlight::contracts

@@ -8,7 +8,7 @@ namespace {
 
 TEST(PreloadEfficiency, OfRtuIsNinetyPercentOfWhatSilenceAndTurnaroundAllow) {
   for (const int speed : {19'200, 115'200, 1'000'000}) {
-    const PreloadRun run = preload_all(BusKind::modbus_rtu, speed, 28, 32);
+    const PreloadRun run = preload_all(BusKind::modbus_rtu, speed, 28);
     EXPECT_EQ(run.receipts, 28) << speed;
     EXPECT_GE(run.efficiency(), 0.9) << speed;
     EXPECT_LE(run.efficiency(), 1.000001) << speed << ": nobody is faster than the wire";
@@ -17,7 +17,7 @@ TEST(PreloadEfficiency, OfRtuIsNinetyPercentOfWhatSilenceAndTurnaroundAllow) {
 
 TEST(PreloadEfficiency, OfSerialIsNinetyPercentOfWhatTheTurnaroundAllows) {
   for (const int speed : {115'200, 1'000'000}) {
-    const PreloadRun run = preload_all(BusKind::serial, speed, 28, 32);
+    const PreloadRun run = preload_all(BusKind::serial, speed, 28);
     EXPECT_EQ(run.receipts, 28) << speed;
     EXPECT_GE(run.efficiency(), 0.9) << speed;
     EXPECT_LE(run.efficiency(), 1.000001) << speed;
