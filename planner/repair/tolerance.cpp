@@ -17,6 +17,8 @@ constexpr double kRounding_m = 1e-9;
 constexpr double kNear = 2.3;
 /// Pairs that nothing helped are tried again when others have changed.
 constexpr int kPasses = 3;
+/// Where more than this share of the people is in pairs too near when punctual, waits do not bring them apart.
+constexpr double kMostWaiting = 0.125;
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 constexpr int kNever = std::numeric_limits<int>::max() / 4;
 
@@ -97,6 +99,10 @@ class Loosener {
       if (weight(done_.walks[pair.a], done_.walks[pair.b]) > 0) open.emplace_back(pair.a, pair.b);
     }
     if (!open.empty()) prepare();
+    const auto punctual = std::count_if(open.begin(), open.end(), [&](const Pair& pair) {
+      return weight(done_.walks[pair.first], done_.walks[pair.second]) == kPunctual;
+    });
+    may_wait_ = static_cast<double>(punctual) <= kMostWaiting * static_cast<double>(walks_.size()) + 8;
     for (int pass = 0; pass < kPasses && !open.empty(); ++pass) {
       changed_.clear();
       for (const Pair& pair : open) solve(pair);
@@ -240,7 +246,7 @@ class Loosener {
 
   /// How many steps somebody can wait and still walk at the limit of speed.
   [[nodiscard]] int most_waits(std::uint32_t person) const {
-    if (task_.stagger_share <= 0 || length_m(walks_[person]) == 0) return 0;
+    if (!may_wait_ || task_.stagger_share <= 0 || length_m(walks_[person]) == 0) return 0;
     const double slack = 1 - length_m(walks_[person]) / task_.longest_m;
     return static_cast<int>(std::floor(std::min(slack, 0.95) / task_.stagger_share + 1e-9));
   }
@@ -356,6 +362,7 @@ class Loosener {
   std::vector<std::uint32_t> person_of_;  ///< position in to_ -> position in from
   std::vector<std::uint32_t> changed_;    ///< in this pass
   std::optional<Change> best_;
+  bool may_wait_ = true;
   bool entirely_ = true;  ///< only changes that leave no trouble
   Tolerance done_;
 };

@@ -122,13 +122,16 @@ CanopenObjects::Value CanopenObjects::own(std::uint16_t index, std::uint8_t sub)
       if (sub == 0) return {SdoAbort::none, kLastTableEntry, 1};
       if (sub > kLastTableEntry) return Value{SdoAbort::no_sub_index};
       const Look& look = model_.look(sub);
-      if (index == kEffects) return {SdoAbort::none, (std::uint32_t{look.brightness} << 8U) | static_cast<std::uint32_t>(look.effect), 2};
-      return {SdoAbort::none, (std::uint32_t{look.colour.red} << 16U) | (std::uint32_t{look.colour.green} << 8U) | look.colour.blue, 4};
+      if (index == kEffects)
+        return {SdoAbort::none, (std::uint32_t{look.brightness} << 8U) | static_cast<std::uint32_t>(look.effect), 2};
+      return {SdoAbort::none,
+              (std::uint32_t{look.colour.red} << 16U) | (std::uint32_t{look.colour.green} << 8U) | look.colour.blue, 4};
     }
     case kStatus:
       return status(sub);
     case kChannels:
-      return sub == 0 ? Value{SdoAbort::none, static_cast<std::uint32_t>(model_.channels()), 1} : Value{SdoAbort::no_sub_index};
+      return sub == 0 ? Value{SdoAbort::none, static_cast<std::uint32_t>(model_.channels()), 1}
+                      : Value{SdoAbort::no_sub_index};
     case kIdentify:
       return sub == 0 ? Value{SdoAbort::none, 0, 1} : Value{SdoAbort::no_sub_index};
     case kOutputs:
@@ -140,7 +143,8 @@ CanopenObjects::Value CanopenObjects::own(std::uint16_t index, std::uint8_t sub)
   }
 }
 
-SdoAbort CanopenObjects::write(std::uint16_t index, std::uint8_t sub, std::span<const std::uint8_t> bytes, Instant now) {
+SdoAbort CanopenObjects::write(std::uint16_t index, std::uint8_t sub, std::span<const std::uint8_t> bytes,
+                               Instant now) {
   std::vector<std::uint8_t> old;
   const SdoAbort there = read(index, sub, old);
   if (there != SdoAbort::none) return there;
@@ -150,7 +154,8 @@ SdoAbort CanopenObjects::write(std::uint16_t index, std::uint8_t sub, std::span<
   const std::uint32_t number = number_of(bytes);
   bool possible = true;
   if (index == kColours) {
-    possible = byte_of(number, 3) == 0 && model_.set_colour(sub, Colour{byte_of(number, 2), byte_of(number, 1), byte_of(number, 0)});
+    possible = byte_of(number, 3) == 0 &&
+               model_.set_colour(sub, Colour{byte_of(number, 2), byte_of(number, 1), byte_of(number, 0)});
   } else if (index == kEffects) {
     possible = model_.set_effect(sub, byte_of(number, 0), byte_of(number, 1));
   } else if (index == kIdentify) {

@@ -238,6 +238,33 @@ MORE = [
 ]
 
 
+class Pictures(Case):
+    """An image of a disc whose edges are grey, and its negative."""
+
+    def planned(self, name, pixel, options=""):
+        with open(self.path(f"{name}.pgm"), "wb") as f:
+            f.write(b"P5 120 90 255\n" + bytes(pixel(x, y) for y in range(90) for x in range(120)))
+        with open(self.path(f"{name}.yaml"), "w") as f:
+            f.write("footlight: 1\ntitle: Disc\nstage: {grid: {kind: square, columns: 24, rows: 18, pitch: 1 m}}\n"
+                    "performers: {count: 90}\nsections:\n"
+                    f"  - {{name: disc, from: {{image: {name}.pgm{options}}}, start: count 1, hold: 8 counts}}\n")
+        footlight("plan", self.path(f"{name}.yaml"), "-o", self.path(f"{name}.plan"))
+        footlight("export", self.path(f"{name}.yaml"), "--plan", self.path(f"{name}.plan"), "--csv", self.path(name))
+        with open(self.path(name, "formations.csv")) as f:
+            return sorted(line.rstrip().split(",")[5:] for line in f.readlines()[1:])
+
+    def test_a_negative_with_invert_is_planned_as_the_picture(self):
+        def grey(x, y):  # from 230 to 20 over 20 pixels
+            return round(min(230, max(20, 125 - 10.5 * (((x - 60) ** 2 + (y - 45) ** 2) ** 0.5 - 28))))
+        drawn = self.planned("grey", grey, ", threshold: 125")
+        self.assertEqual(len(drawn), 90)
+        self.assertEqual(drawn, self.planned("negative", lambda x, y: 250 - grey(x, y), ", threshold: 124, invert: true"))
+        self.assertEqual(drawn, self.planned("hard", lambda x, y: 255 if grey(x, y) > 125 else 0))
+        # Otsu cuts grey edges somewhere between dark and bright: the same disc, hardly larger or smaller.
+        otsu = self.planned("otsu", grey)
+        self.assertGreater(len([cell for cell in otsu if cell in drawn]), 80)
+
+
 class OtherVideos(Case):
     def judge_video(self, video, people, columns, rows, wings, counts, kind="square"):
         source = os.path.join(SHARED, "media", video)

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/check.hpp"
 #include "planner/measure.hpp"
+#include "planner/plan_show.hpp"
 #include "planner/validate.hpp"
 #include "tests/support/plan_builder.hpp"
 
@@ -67,6 +69,49 @@ TEST_P(OutsideJudgeTest, CheckMarksAgreesAboutTheToleratedLag) {
   }
   if (lag_s < 2) {
     const std::string said = outside_.check_marks("--lag " + std::to_string(lag_s + 1e-4));
+    EXPECT_GT(number_in(said, "too_close_lag").value(), 0) << said;
+  }
+}
+
+/// Lists of cells, some of them by name: waits, marks on the way and conflicts that are left.
+Plan planned_lists(int seed) {
+  Rng rng(static_cast<std::uint64_t>(seed) + 300);
+  Show show;
+  show.file = "show.yaml";
+  show.stage.grid = *Grid::make(static_cast<GridKind>(seed % 3), 12, 9, 1.0);
+  show.stage.max_speed_mps = 1.4;
+  for (int p = 0; p < 14; ++p) {
+    Performer performer;
+    performer.id = performer.name = std::to_string(p + 1);
+    show.performers.push_back(performer);
+  }
+  for (int s = 0; s < 4; ++s) {
+    Section section;
+    section.name = "list" + std::to_string(s);
+    CellsSource list;
+    list.cells = tests::random_cells(show.stage.grid, 14, rng);
+    list.assigned = s > 0 && s != seed % 4;
+    section.from = list;
+    section.start_count = 1 + s * (seed % 2 == 0 ? 60 : 24);
+    section.hold_counts = 4;
+    show.sections.push_back(section);
+  }
+  auto planned = plan_show(show, std::vector<std::optional<Film>>(4));
+  FL_CHECK(planned.has_value());
+  return std::move(planned->plan);
+}
+
+TEST_P(OutsideJudgeTest, CheckMarksMeasuresTheLagThatThePlanSays) {
+  const Plan plan = planned_lists(GetParam());
+  outside_.write(plan);
+  double lag_s = 2;
+  for (const TransitionFacts& facts : plan.transitions) lag_s = std::min(lag_s, facts.tolerated_lag_s);
+  if (lag_s > 0) {
+    const std::string said = outside_.check_marks("--lag " + std::to_string(lag_s - 1e-4));
+    EXPECT_EQ(number_in(said, "too_close_lag"), 0) << said;
+  }
+  if (lag_s < 2) {
+    const std::string said = outside_.check_marks("--lag " + std::to_string(lag_s + 1e-3));
     EXPECT_GT(number_in(said, "too_close_lag").value(), 0) << said;
   }
 }

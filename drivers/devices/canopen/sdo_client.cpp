@@ -73,8 +73,8 @@ std::optional<CanFrame> SdoClient::take(const CanFrame& frame) {
   const bool ours = frame.kind == CanFrame::Kind::classic && frame.id == kAnswer + node_ && frame.length == 8;
   if (state_ != State::waiting || !ours) return std::nullopt;
   // An answer that names another object belongs to a transfer that is over.
-  const bool names_ours = frame.data[1] == (place_.index & 0xFFU) && frame.data[2] == place_.index >> 8U &&
-                          frame.data[3] == place_.sub;
+  const bool names_ours =
+      frame.data[1] == (place_.index & 0xFFU) && frame.data[2] == place_.index >> 8U && frame.data[3] == place_.sub;
   if (frame.data[0] == kAbort) {
     if (!names_ours) return std::nullopt;
     state_ = State::aborted;

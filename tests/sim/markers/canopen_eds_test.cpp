@@ -55,11 +55,13 @@ using Place = std::pair<std::uint16_t, std::uint8_t>;
 std::map<Place, Entry> entries(const std::map<std::string, Section>& sections) {
   std::map<Place, Entry> found;
   for (const auto& [name, section] : sections) {
-    if (name.find_first_not_of("0123456789ABCDEFsub") != std::string::npos || section.count("ParameterName") == 0) continue;
+    if (name.find_first_not_of("0123456789ABCDEFsub") != std::string::npos || section.count("ParameterName") == 0)
+      continue;
     const auto index = static_cast<std::uint16_t>(std::strtoul(name.substr(0, 4).c_str(), nullptr, 16));
     if (section.count("SubNumber") != 0) continue;
     const auto text = [&](const char* key) { return section.count(key) == 0 ? std::string() : section.at(key); };
-    Entry entry{text("ParameterName"), static_cast<int>(number(text("DataType"))), text("AccessType"), text("DefaultValue")};
+    Entry entry{text("ParameterName"), static_cast<int>(number(text("DataType"))), text("AccessType"),
+                text("DefaultValue")};
     if (section.count("CompactSubObj") == 0) {
       const auto sub = name.size() > 4 ? std::strtoul(name.substr(7).c_str(), nullptr, 16) : 0;
       found[{index, static_cast<std::uint8_t>(sub)}] = entry;

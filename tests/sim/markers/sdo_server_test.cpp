@@ -34,7 +34,8 @@ TEST_F(SdoServerTest, ALongTextComesInSegmentsOfSeven) {
   EXPECT_EQ(ask({0x60, 0, 0, 0, 0, 0, 0, 0}), frame(0x585, {0x00, 'F', 'o', 'o', 't', 'l', 'i', 'g'}));
   EXPECT_EQ(ask({0x70, 0, 0, 0, 0, 0, 0, 0}), frame(0x585, {0x10, 'h', 't', ' ', 'm', 'a', 'r', 'k'}));
   EXPECT_EQ(ask({0x60, 0, 0, 0, 0, 0, 0, 0}), frame(0x585, {0x0B, 'e', 'r', 0, 0, 0, 0, 0})) << "five bytes are unused";
-  EXPECT_EQ(ask({0x70, 0, 0, 0, 0, 0, 0, 0}), frame(0x585, {0x80, 0x08, 0x10, 0, 0x01, 0x00, 0x04, 0x05})) << "it is over";
+  EXPECT_EQ(ask({0x70, 0, 0, 0, 0, 0, 0, 0}), frame(0x585, {0x80, 0x08, 0x10, 0, 0x01, 0x00, 0x04, 0x05}))
+      << "it is over";
 }
 
 TEST_F(SdoServerTest, ARepeatedToggleBitIsAnAbort) {
