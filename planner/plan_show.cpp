@@ -10,6 +10,7 @@
 #include "planner/by_hand.hpp"
 #include "planner/casting.hpp"
 #include "planner/parallel.hpp"
+#include "planner/plan_notes.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/proof.hpp"
 #include "planner/refusal.hpp"
@@ -22,9 +23,6 @@
 
 namespace footlight::planner {
 namespace {
-
-/// "40 %", and "< 1 %" for what rounding would hide.
-std::string percent(double share) { return share > 0 && share < 0.01 ? "< 1 %" : fmt::format("{:.0f} %", 100 * share); }
 
 Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 
@@ -81,25 +79,29 @@ class ShowPlanner {
     stand_in();
     describe();
     write_formations(*chain);
-    note_what_gave_way(*chain);
+    const NoteTask notes{&show_, &limits_, &stations_, &*chain, &slot_, clearance_m_};
+    note_what_gave_way(notes, planned_.plan);
     note_wide_people();
-    note_steps();
+    note_steps(notes, planned_.plan);
     if (slow_for_all_) {
       planned_.plan.sections.front().notes.push_back(
           "everybody walks as slowly as the slowest: no tracks are slow enough for those with limits of their own");
     }
     const auto sound = prove(*chain, planned_.plan, reuse_.stages, &facts_, progress_);
     if (!sound) return interrupted();
-    note_lag();
-    note_waits(*chain);
-    note_marks_on_the_way(*chain);
+    note_lag(notes, planned_.plan);
+    note_waits(notes, planned_.plan);
+    note_marks_on_the_way(notes, planned_.plan);
     progress_.tell("validate", 0);
     planned_.plan.valid = *sound;
     if (!*sound) {
       const Verdict verdict = validate(planned_.plan);
       planned_.plan.valid = verdict.valid();
       planned_.refusal = refusal_texts(show_, planned_.plan, verdict);
-      if (!verdict.valid()) name_who_cannot_pass(*chain);
+      if (!verdict.valid()) {
+        const std::vector<std::string> who = who_cannot_pass(notes);
+        planned_.refusal.insert(planned_.refusal.begin(), who.begin(), who.end());
+      }
     }
     if (!planned_.plan.valid && widest_two_m() > show_.stage.grid.pitch_m()) {
       planned_.refusal.insert(planned_.refusal.begin(), too_wide());
@@ -320,139 +322,6 @@ class ShowPlanner {
           "{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: everybody "
           "is planned that far apart, and many may have to wait",
           widest_two(), widest_two_m(), bound_m));
-    }
-  }
-
-  /// Over cells, where a step cannot be as short as a count.
-  void note_steps() {
-    if (show_.stage.walk != WalkKind::cells) return;
-    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      const PlanSection& section = planned_.plan.sections[s];
-      const Instant before = s > 0 ? planned_.plan.sections[s - 1].end : kStart;
-      const double speed_mps = section_speed(limits_, show_.sections[s]);
-      const Beats beats = beats_between(show_.tempo, before, section.end, show_.stage.grid.pitch_m() / speed_mps);
-      if (beats.counts == 1) continue;
-      planned_.plan.sections[s].notes.push_back(fmt::format(
-          "a step from cell to cell takes {} counts, since one of {:.3g} s is too short for {:g} m at {:g} m/s",
-          beats.counts, beats.step_s / beats.counts, show_.stage.grid.pitch_m(), speed_mps));
-    }
-  }
-
-  /// Who comes too near on the way to an exact formation, and how much more time would do.
-  void name_who_cannot_pass(const Chain& chain) {
-    std::vector<std::string> texts;
-    for (const Chain::Unpassed& one : chain.unpassed) {
-      const Stop& start = chain.stops[one.leg];
-      std::vector<std::uint32_t> who(slot_[one.leg].size());
-      for (std::uint32_t p = 0; p < who.size(); ++p) who[slot_[one.leg][p]] = p;
-      CannotPass fact{start.depart, chain.stops[one.leg + 1].section, one.given_s, one.needed_s, {}, {}};
-      for (const auto& [a, b] : chain.legs[one.leg].conflicts) fact.pairs.emplace_back(who[a], who[b]);
-      fact.last = who[one.last];
-      texts.push_back(cannot_pass_text(show_, fact));
-    }
-    planned_.refusal.insert(planned_.refusal.begin(), texts.begin(), texts.end());
-  }
-
-  /// The transitions that end in a section and do not tolerate the stage's lag.
-  void note_lag() {
-    const double lag_s = to_seconds(show_.stage.lag);
-    const double spare_m = show_.stage.grid.clearance_bound_m() - clearance_m_;
-    Plan& plan = planned_.plan;
-    for (std::size_t s = 0; s < plan.sections.size(); ++s) {
-      const Instant first = s > 0 ? plan.sections[s - 1].end : Instant::min();
-      const Instant last = s + 1 < plan.sections.size() ? plan.sections[s].end : Instant::max();
-      int count = 0;
-      int short_of = 0;
-      const TransitionFacts* worst = nullptr;
-      for (const TransitionFacts& facts : plan.transitions) {
-        if (facts.end <= first || facts.end > last) continue;
-        ++count;
-        if (facts.tolerated_lag_s >= lag_s - 1e-9) continue;
-        ++short_of;
-        if (worst == nullptr || facts.tolerated_lag_s < worst->tolerated_lag_s) worst = &facts;
-      }
-      if (worst == nullptr) continue;
-      std::string helps = "a longer section or a smaller clearance would help";
-      if (spare_m > 0)
-        helps = fmt::format("walks of at most {:.2f} m/s tolerate it: a longer section", spare_m / lag_s);
-      plan.sections[s].notes.push_back(fmt::format(
-          "in {} of {} transitions people come too near when they are {:g} s late; least is tolerated, {:.3f} "
-          "s, in the one from count {:g}; {}",
-          short_of, count, lag_s, worst->tolerated_lag_s, show_.tempo.count_at(worst->start), helps));
-    }
-  }
-
-  /// Who leaves later or is there earlier than the others.
-  void note_waits(const Chain& chain) {
-    std::vector<int> waits(show_.sections.size(), 0);
-    std::vector<std::string> example(show_.sections.size());
-    for (std::size_t k = 0; k < chain.legs.size(); ++k) {
-      if (chain.legs[k].timing.empty()) continue;
-      const std::size_t s = chain.stops[k + 1].section.at();
-      const Instant start = chain.stops[k].depart;
-      const Instant end = chain.stops[k + 1].arrive;
-      for (std::size_t p = 0; p < show_.performers.size(); ++p) {
-        const Chain::WalkTimes own = walking(chain, k, p);
-        if (show_.performers[p].absent || (own.start == start && own.end == end)) continue;
-        if (waits[s]++ > 0) continue;
-        const auto counts = [&](Instant from, Instant to) {
-          return std::round(100 * (show_.tempo.count_at(to) - show_.tempo.count_at(from))) / 100;
-        };
-        example[s] = fmt::format(
-            "performer {} leaves {:g} counts later and is there {:g} counts earlier than the others "
-            "who walk from count {:g}",
-            show_.performers[p].id, counts(start, own.start), counts(own.end, end), show_.tempo.count_at(start));
-      }
-    }
-    for (std::size_t s = 0; s < waits.size(); ++s) {
-      if (waits[s] == 0) continue;
-      planned_.plan.sections[s].notes.push_back(fmt::format(
-          "{} walk{} made one after the other, since people would come too near on them or when they are late: {}",
-          waits[s], waits[s] == 1 ? " is" : "s are", example[s]));
-    }
-  }
-
-  void note_marks_on_the_way(const Chain& chain) {
-    for (const Chain::Passed& one : chain.passed) {
-      const Stop& goal = chain.stops[one.last_stop];
-      const std::size_t marks = one.last_stop - one.first_stop - 1;
-      planned_.plan.sections[goal.section.at()].notes.push_back(fmt::format(
-          "between count {:g} and count {:g} people pass each other with {} mark{} on the way: they walk {:.1f} m "
-          "instead of {:.1f} m",
-          show_.tempo.count_at(chain.stops[one.first_stop].depart), goal.count, marks, marks == 1 ? "" : "s",
-          one.walked_m, one.straight_m));
-    }
-  }
-
-  void note_what_gave_way(const Chain& chain) {
-    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      long given = 0;
-      long drawn = 0;
-      int formations = 0;
-      int number = 0;
-      int worst = 0;
-      double worst_share = 0;
-      for (const Stop& stop : chain.stops) {
-        if (!stop.station || stations_[*stop.station].section.at() != s) continue;
-        const int in_picture = stations_[*stop.station].in_picture;
-        ++number;
-        given += stop.given_way;
-        drawn += in_picture;
-        if (stop.given_way == 0) continue;
-        ++formations;
-        const double share = double(stop.given_way) / std::max(1, in_picture);
-        if (share > worst_share) {
-          worst_share = share;
-          worst = number;
-        }
-      }
-      if (given == 0) continue;
-      planned_.plan.sections[s].notes.push_back(
-          fmt::format("the drawing gives way: {} of {} places ({}) in {} formations are not reached in time, most in "
-                      "{}/{} ({}), since "
-                      "nobody walks faster than {:g} m/s",
-                      given, drawn, percent(double(given) / double(drawn)), formations, show_.sections[s].name, worst,
-                      percent(worst_share), section_speed(limits_, show_.sections[s])));
     }
   }
 

@@ -209,4 +209,33 @@ std::vector<std::vector<std::uint32_t>> exchange_kinds(const Casting& casting, s
   return kinds;
 }
 
+NamedTracks name_tracks(const Casting& casting, const std::vector<std::vector<std::uint32_t>>& who,
+                        const std::vector<TrackPlaces>& visited, std::size_t people) {
+  NamedTracks named;
+  named.first_place.resize(people);
+  std::iota(named.first_place.begin(), named.first_place.end(), 0U);
+  named.alike.assign(people, 0);
+  if (casting.free()) return named;
+  Refinement of_kind;
+  for (std::size_t p = 0; p < people && !casting.kind.empty(); ++p) named.alike[p] = of_kind.of(0, casting.kind[p]);
+  Classes track(people, 0);
+  for (std::size_t i = 0; i < people; ++i) track[i] = named.alike[who[0][i]];
+  for (const TrackPlaces& here : visited) {
+    const Classes& person = casting.bindings[here.station].person;
+    Refinement refined;
+    for (std::size_t p = 0; p < people; ++p) named.alike[p] = refined.of(named.alike[p], person[p]);
+    for (std::size_t i = 0; i < people; ++i) track[i] = refined.of(track[i], person[who[here.station][here.place[i]]]);
+  }
+  Classes performers = named.first_place;
+  Classes tracks = named.first_place;
+  std::stable_sort(performers.begin(), performers.end(),
+                   [&](auto a, auto b) { return named.alike[a] < named.alike[b]; });
+  std::stable_sort(tracks.begin(), tracks.end(), [&](auto a, auto b) { return track[a] < track[b]; });
+  for (std::size_t n = 0; n < people; ++n) {
+    FL_CHECK(named.alike[performers[n]] == track[tracks[n]]);
+    named.first_place[performers[n]] = tracks[n];
+  }
+  return named;
+}
+
 }  // namespace footlight::planner

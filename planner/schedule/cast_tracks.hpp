@@ -61,6 +61,23 @@ struct CastTracks {
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> exchange_kinds(const Casting& casting, std::size_t people,
                                                                      std::size_t stations);
 
+/// Where tracks pass a station: its place for each track, numbered by the places of the first station.
+struct TrackPlaces {
+  std::size_t station = 0;
+  std::vector<std::uint32_t> place;
+};
+
+/// Who walks which track.
+struct NamedTracks {
+  std::vector<std::uint32_t> first_place;  ///< of each performer, in the first station
+  std::vector<std::uint32_t> alike;  ///< of each performer: people with equal numbers may have each other's tracks
+};
+
+/// Tracks of equal classes at every binding are those of people of the same classes, the first of the first.
+/// @param who CastTracks::who  @param visited every station that binds, in order
+[[nodiscard]] NamedTracks name_tracks(const Casting& casting, const std::vector<std::vector<std::uint32_t>>& who,
+                                      const std::vector<TrackPlaces>& visited, std::size_t people);
+
 /// Numbers for classes of classes: equal pairs get equal numbers, in the order in which they are asked for.
 class Refinement {
  public:

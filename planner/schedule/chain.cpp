@@ -376,39 +376,19 @@ class ChainBuilder {
     return goals;
   }
 
-  /// Tracks of equal classes at every binding are those of people of the same classes, the first of the first.
   void name_people() {
-    const std::size_t people = stations_.front().cells.size();
-    chain_.first_place = numbers(people);
-    chain_.alike.assign(people, 0);
-    if (casting_.free()) return;
-    Refinement of_kind;
-    std::vector<std::uint32_t> track(people, 0);  // class of the track from each first place so far
-    std::vector<std::uint32_t>& performer = chain_.alike;
-    for (std::size_t p = 0; p < people && !casting_.kind.empty(); ++p) performer[p] = of_kind.of(0, casting_.kind[p]);
-    for (std::size_t i = 0; i < people; ++i) track[i] = performer[who_[0][i]];
-    std::vector<std::uint32_t> slot = numbers(people);
-    for (std::size_t k = 0; k < chain_.stops.size(); ++k) {
-      if (k > 0) {
-        for (std::uint32_t& at : slot) at = chain_.legs[k - 1].target_of[at];
-      }
+    std::vector<std::uint32_t> slot = numbers(stations_.front().cells.size());
+    std::vector<TrackPlaces> visited;
+    for (std::size_t k = 0; k < chain_.stops.size() && !casting_.bindings.empty(); ++k) {
+      for (std::size_t i = 0; i < slot.size() && k > 0; ++i) slot[i] = chain_.legs[k - 1].target_of[slot[i]];
       const auto station = chain_.stops[k].station;
-      if (!station || casting_.bindings.empty() || !casting_.bindings[*station].binds()) continue;
-      const std::vector<std::uint32_t>& person = casting_.bindings[*station].person;
-      Refinement refined;
-      for (std::size_t p = 0; p < people; ++p) performer[p] = refined.of(performer[p], person[p]);
-      for (std::size_t i = 0; i < people; ++i) {
-        track[i] = refined.of(track[i], person[who_[*station][place_at(*station, slot[i])]]);
-      }
+      if (!station || !casting_.bindings[*station].binds()) continue;
+      TrackPlaces& here = visited.emplace_back(TrackPlaces{*station, slot});
+      for (std::uint32_t& place : here.place) place = place_at(*station, place);
     }
-    std::vector<std::uint32_t> order = numbers(people);
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return performer[a] < performer[b]; });
-    std::vector<std::uint32_t> tracks = numbers(people);
-    std::stable_sort(tracks.begin(), tracks.end(), [&](auto a, auto b) { return track[a] < track[b]; });
-    for (std::size_t n = 0; n < people; ++n) {
-      FL_CHECK(performer[order[n]] == track[tracks[n]]);
-      chain_.first_place[order[n]] = tracks[n];
-    }
+    NamedTracks named = name_tracks(casting_, who_, visited, slot.size());
+    chain_.first_place = std::move(named.first_place);
+    chain_.alike = std::move(named.alike);
   }
 
   /// Everybody uses the time that is left evenly.

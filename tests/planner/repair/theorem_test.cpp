@@ -119,8 +119,7 @@ TEST_P(Theorem, TheBoundIsReachedAndNotBelow) {
   EXPECT_NEAR(least_m, grid.clearance_bound_m(), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Grids, Theorem,
-                         testing::Values(GridKind::square, GridKind::hexagonal, GridKind::triangular));
+INSTANTIATE_TEST_SUITE_P(Grids, Theorem, testing::Values(GridKind::square, GridKind::hexagonal, GridKind::triangular));
 
 }  // namespace
 }  // namespace footlight::planner
