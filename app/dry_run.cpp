@@ -67,6 +67,8 @@ class DryRun {
   Instant show_starts_;
   ManualClock clock_;
   sim::SimulatedRig simulated_;
+  std::optional<DirectWireLog> wire_log_;
+  std::optional<LoggedPorts> logged_;
   std::unique_ptr<ShowOnWires> wires_;
   std::optional<MarkerWatch> watch_;
   std::vector<Instant> wishes_;
@@ -83,7 +85,8 @@ class DryRun {
 };
 
 Status<> DryRun::connect() {
-  auto drivers = drivers_on(simulated_, rig_, plan_);
+  if (options_.wire_log != nullptr) logged_.emplace(wire_log_.emplace(*options_.wire_log, rig_, clock_));
+  auto drivers = drivers_on(simulated_, rig_, plan_, logged_ ? &*logged_ : nullptr);
   if (!drivers) return std::move(drivers).error();
   auto wires = put_on_wires(show_, plan_, rig_, std::move(drivers).value());
   if (!wires) return std::move(wires).error();

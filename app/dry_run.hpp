@@ -20,8 +20,9 @@ namespace footlight::app {
 struct DryRunOptions {
   std::uint64_t seed = 1;
   sim::Faults faults;
-  std::ostream* trace = nullptr;  ///< one line for each frame, or null
-  const Clock* pace = nullptr;    ///< runs no faster than this clock; null: as fast as it goes
+  std::ostream* trace = nullptr;     ///< one line for each frame, or null
+  std::ostream* wire_log = nullptr;  ///< a pcapng section of what goes through the ports, or null
+  const Clock* pace = nullptr;       ///< runs no faster than this clock; null: as fast as it goes
   const std::atomic<bool>* stop = nullptr;
   std::function<void(double share)> progress;           ///< of show time; may be empty
   std::function<void(const std::string& line)> moment;  ///< a line for each cue and switch; may be empty

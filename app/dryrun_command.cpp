@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/dryrun_command.hpp"
 
-#include <cerrno>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <unistd.h>
 
 #include "app/dry_run.hpp"
 #include "app/dry_run_report.hpp"
+#include "app/growing_file.hpp"
 #include "app/plan_step.hpp"
 
 namespace footlight::app {
@@ -25,54 +19,18 @@ struct Options {
   PlanChoice choice;
   std::uint64_t seed = 1;
   std::string trace;
+  std::string wire_log;
   std::string faults;
   bool realtime = false;
 };
 
-/// A trace may have gigabytes: it is written as it comes, to a temporary name beside the file, and takes the file's
-/// name when it is whole.
-class TraceFile {
- public:
-  explicit TraceFile(std::string file)
-      : file_(std::move(file)), temporary_(fmt::format("{}.{}.part", file_, getpid())) {}
-  ~TraceFile() {
-    if (stream_.is_open()) stream_.close();
-    std::error_code ignored;
-    if (!kept_) std::filesystem::remove(temporary_, ignored);
-  }
-  TraceFile(const TraceFile&) = delete;
-  TraceFile& operator=(const TraceFile&) = delete;
-
-  Status<> open() {
-    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-    if (!stream_) return failure();
-    return Done{};
-  }
-  std::ostream& stream() { return stream_; }
-  Status<> keep() {
-    stream_.close();
-    if (!stream_ || std::rename(temporary_.c_str(), file_.c_str()) != 0) return failure();
-    kept_ = true;
-    return Done{};
-  }
-
- private:
-  [[nodiscard]] Error failure() const {
-    return input_error(fmt::format("cannot write the trace '{}': {}", file_, std::generic_category().message(errno)));
-  }
-
-  std::string file_;
-  std::string temporary_;
-  std::ofstream stream_;
-  bool kept_ = false;
-};
-
 Result<DryRunReport> play(Session& session, const Options& options, const PlannedShow& planned,
-                          const sim::Faults& faults, TraceFile* trace) {
+                          const sim::Faults& faults, std::ostream* trace, std::ostream* wire_log) {
   DryRunOptions dry;
   dry.seed = options.seed;
   dry.faults = faults;
-  dry.trace = trace != nullptr ? &trace->stream() : nullptr;
+  dry.trace = trace;
+  dry.wire_log = wire_log;
   dry.stop = session.stop();
   std::optional<SteadyClock> clock;
   if (options.realtime) {
@@ -96,16 +54,21 @@ int run(Session& session, const Options& options) {
   auto planned = plan_for(session, options.choice, false);
   if (!planned) return session.fail(planned.error());
   if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
-  std::optional<TraceFile> trace;
-  if (!options.trace.empty()) {
-    if (auto spared = spare_inputs(planned->loaded, options.trace); !spared) return session.fail(spared.error());
-    trace.emplace(options.trace);
-    if (auto opened = trace->open(); !opened) return session.fail(opened.error());
-  }
-  const auto report = play(session, options, *planned, faults, trace ? &*trace : nullptr);
+  std::optional<GrowingFile> trace;
+  std::optional<GrowingFile> wire_log;
+  const auto open = [&](std::optional<GrowingFile>& file, const char* what, const std::string& name) -> Status<> {
+    if (name.empty()) return Done{};
+    if (auto spared = spare_inputs(planned->loaded, name); !spared) return spared;
+    return file.emplace(what, name).open();
+  };
+  if (auto opened = open(trace, "trace", options.trace); !opened) return session.fail(opened.error());
+  if (auto opened = open(wire_log, "wire log", options.wire_log); !opened) return session.fail(opened.error());
+  const auto report = play(session, options, *planned, faults, trace ? &trace->stream() : nullptr,
+                           wire_log ? &wire_log->stream() : nullptr);
   if (!report) return session.fail(report.error());
-  if (trace) {
-    if (auto kept = trace->keep(); !kept) return session.fail(kept.error());
+  for (std::optional<GrowingFile>* file : {&trace, &wire_log}) {
+    if (!*file) continue;
+    if (auto kept = (*file)->keep(); !kept) return session.fail(kept.error());
   }
   session.print(session.json ? dry_run_json(*report) : dry_run_text(*report));
   if (report->wrong_final > 0) return session.fail(device_error(dry_run_failure(*report)));
@@ -128,6 +91,8 @@ void add_dryrun_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--faults", options->faults,
                       "what goes wrong, for example loss=5%,reboot=2 (also corrupt, duplicate, delay, dead)");
   command->add_option("--trace", options->trace, "write every frame on every bus to this file, one a line");
+  command->add_option("--wire-log", options->wire_log,
+                      "write what the drivers say and hear to this pcapng file, for Wireshark");
   command->add_flag("--realtime", options->realtime, "no faster than the music, with a line for each switch");
   session.add_options(*command, true);
   command->footer(

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/bundle_command.hpp"
 #include "app/check_command.hpp"
 #include "app/command.hpp"
 #include "app/dark_command.hpp"
@@ -28,8 +29,9 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,    add_check_command,  add_plan_command, add_measure_command, add_why_command, add_export_command,
-    add_sheets_command, add_dryrun_command, add_dark_command, add_devices_command, add_sim_command, add_run_command,
+    add_new_command,    add_check_command,  add_plan_command,   add_measure_command, add_why_command,
+    add_export_command, add_sheets_command, add_dryrun_command, add_dark_command,    add_devices_command,
+    add_sim_command,    add_run_command,    add_bundle_command,
 };
 
 constexpr const char* kFooter =

@@ -3,21 +3,31 @@
 
 #include <array>
 #include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <poll.h>
 #include <unistd.h>
 
+#include "app/growing_file.hpp"
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
 #include "app/plan_step.hpp"
 #include "app/simulated_buses.hpp"
+#include "app/state_folder.hpp"
+#include "app/wire_log/wire_recorder.hpp"
+#include "config/output_file.hpp"
 #include "config/transport_map.hpp"
+#include "core/clock.hpp"
 
 namespace footlight::app {
 namespace {
@@ -25,6 +35,8 @@ namespace {
 struct Options {
   PlanChoice choice;
   std::string transports;
+  std::string wire_log;
+  std::string state;
   bool go = false;
 };
 
@@ -85,12 +97,42 @@ Result<std::vector<drivers::Port>> open_ports(const Rig& rig) {
 
 std::string nodes_text(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
 
+/// What this run leaves behind for `footlight bundle`. A disk that takes nothing costs a note, not the show.
+class Traces {
+ public:
+  Traces(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig)
+      : session_(session), folder_(state_folder(options.state)) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    moments_.open(folder_ / "moments.txt", std::ios::trunc);
+    nlohmann::ordered_json run{{"version", FOOTLIGHT_VERSION},
+                               {"started_since_1970_s", to_seconds(wall_time())},
+                               {"show", std::filesystem::absolute(options.choice.show).string()},
+                               {"plan_of", planned.plan().show_hash},
+                               {"buses", nlohmann::ordered_json::array()}};
+    for (const Bus& bus : rig.buses) run["buses"].push_back({{"name", bus.name}, {"url", bus.url}});
+    write("run.json", run.dump(2) + "\n");
+    std::filesystem::remove(folder_ / "report.json", error);
+  }
+  void moment(const std::string& line) { moments_ << line << std::endl; }
+  void write(const char* name, const std::string& text) {
+    if (auto written = config::write_file(folder_ / name, text); !written) session_.note(written.error().message);
+  }
+  [[nodiscard]] std::filesystem::path ring() const { return folder_ / "wires"; }
+
+ private:
+  Session& session_;
+  std::filesystem::path folder_;
+  std::ofstream moments_;
+};
+
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
-                        const std::vector<drivers::Port>& ports) {
+                        const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log) {
   EnterKey enter;
   LiveOptions live;
   live.go = options.go;
   live.stop = session.stop();
+  live.wire_log = wire_log;
   bool waits_for_nobody = false;
   live.presses = [&] {
     const int presses = options.go ? 0 : enter.presses();
@@ -108,13 +150,24 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   live.progress = [&](double share, std::size_t unconfirmed) {
     session.tell(unconfirmed == 0 ? "show" : "show, " + nodes_text(unconfirmed) + " not right,", share);
   };
-  if (!session.json) live.moment = [&](const std::string& line) {
+  live.moment = [&](const std::string& line) {
+    traces.moment(line);
+    if (session.json) return;
     session.clear_line();
     session.print_now(line);
   };
   auto report = live_run(planned.loaded.show, planned.plan(), rig, ports, live);
   session.clear_line();
   return report;
+}
+
+Status<> keep(Session& session, WireRecorder& recorder, std::optional<GrowingFile>& file) {
+  recorder.close();
+  if (recorder.dropped() > 0) {
+    session.note(fmt::format("{} packets are not in the wire logs: the disk was too slow", recorder.dropped()));
+  }
+  if (!recorder.whole()) session.note("the wire logs of the last ten minutes are not whole: the disk took no more");
+  return file ? file->keep() : Status<>(Done{});
 }
 
 int run(Session& session, const Options& options) {
@@ -127,8 +180,23 @@ int run(Session& session, const Options& options) {
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
-  const auto report = play(session, options, *planned, rig, *ports);
+  Traces traces(session, options, *planned, rig);
+  std::optional<GrowingFile> file;
+  if (!options.wire_log.empty()) {
+    if (auto spared = spare_inputs(planned->loaded, options.wire_log); !spared) return session.fail(spared.error());
+    if (auto opened = file.emplace("wire log", options.wire_log).open(); !opened) return session.fail(opened.error());
+  }
+  const SteadyClock clock;
+  auto recorder = WireRecorder::open(rig, {traces.ring(), file ? &file->stream() : nullptr}, clock);
+  if (!recorder) {
+    session.note(recorder.error().message);
+    recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
+    if (!recorder) return session.fail(recorder.error());
+  }
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get());
+  if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
+  traces.write("report.json", live_json(*report, rig));
   session.print(session.json ? live_json(*report, rig) : live_text(*report));
   if (report->unconfirmed > 0) return session.fail(device_error(live_failure(*report)));
   return 0;
@@ -143,11 +211,16 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--transport-map", options->transports,
                       "YAML file: where buses are here and today, instead of where the rig says");
   command->add_flag("--go", options->go, "press GO when all nodes have answered, and whenever the show waits");
+  command->add_option("--wire-log", options->wire_log,
+                      "write all that goes over the wires to this pcapng file, for Wireshark");
+  command->add_option("--state", options->state, "folder for the last ten minutes of every wire and what the run said")
+      ->default_str("~/.local/state/footlight");
   session.add_options(*command, true);
   command->footer(
       "Enter is GO. At first the look table is uploaded, every node asked and the opening lit. A plan that is refused\n"
       "never reaches a marker. At the end every node has to have confirmed what it shows: exit status 4 when one has\n"
-      "not, or when a bus cannot be opened. SIGINT ends it and makes no lamp dark: markers hold, then lose guidance.\n\n"
+      "not, or when a bus cannot be opened. SIGINT ends it and makes no lamp dark: markers hold, then lose "
+      "guidance.\n\n"
       "Examples:\n  footlight run show.yaml\n  footlight sim show.yaml --write-map map.yaml &\n"
       "  footlight run show.yaml --transport-map map.yaml --go\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });

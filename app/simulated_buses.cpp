@@ -51,12 +51,14 @@ Rig with_simulated_buses(Rig rig) {
 }
 
 Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated, const Rig& rig,
-                                                                 const Plan& plan) {
+                                                                 const Plan& plan, LoggedPorts* logged) {
   std::vector<std::unique_ptr<drivers::Driver>> out;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const auto bus = BusIndex::of(b);
-    auto driver = drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, bus), controller::plan_byte_of(plan),
-                                       port_of(simulated, rig, bus));
+    drivers::PortReference port = port_of(simulated, rig, bus);
+    if (logged != nullptr) port = logged->before(b, rig.buses[b].kind, port);
+    auto driver =
+        drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, bus), controller::plan_byte_of(plan), port);
     if (!driver) return std::move(driver).error();
     out.push_back(std::move(driver).value());
   }

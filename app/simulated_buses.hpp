@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/wire_log/logged_ports.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
 #include "core/rig.hpp"
@@ -21,8 +22,10 @@ namespace footlight::app {
 [[nodiscard]] drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, BusIndex bus);
 
 /// The real drivers on simulated buses, one for each bus of the rig. Errors: addresses that a bus cannot have.
+/// @param logged stands between drivers and buses where it is given, and outlives the drivers
 [[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated,
-                                                                               const Rig& rig, const Plan& plan);
+                                                                               const Rig& rig, const Plan& plan,
+                                                                               LoggedPorts* logged = nullptr);
 
 /// Whether the lamps of a valid plan can be lit in time: an error where build_schedule has one. Nothing is played.
 [[nodiscard]] Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig);

@@ -7,8 +7,8 @@
 namespace footlight::app {
 namespace {
 
-constexpr Duration kLook = milliseconds(200);         // at a port that has no handle, or has been unplugged
-constexpr Duration kTroubled = milliseconds(20);      // a wire that says again and again that it is gone
+constexpr Duration kLook = milliseconds(200);          // at a port that has no handle, or has been unplugged
+constexpr Duration kTroubled = milliseconds(20);       // a wire that says again and again that it is gone
 constexpr Duration kHandedOverLate = microseconds(1);  // what is due a moment from now is as good as due
 
 }  // namespace

@@ -14,8 +14,11 @@ using Json = nlohmann::ordered_json;
 constexpr double kResolution_ms = 0.001;  // of the lateness: nothing is a thousand times better than nothing
 
 Json lateness_json(const LatenessReport& lateness) {
-  return {{"count", lateness.count},     {"p50_ms", lateness.p50_ms},     {"p99_ms", lateness.p99_ms},
-          {"p999_ms", lateness.p999_ms}, {"worst_ms", lateness.worst_ms}};
+  return {{"count", lateness.count},
+          {"p50_ms", lateness.p50_ms},
+          {"p99_ms", lateness.p99_ms},
+          {"p999_ms", lateness.p999_ms},
+          {"worst_ms", lateness.worst_ms}};
 }
 
 double ratio(double ours_ms, double bare_ms) {
@@ -90,10 +93,11 @@ std::string live_text(const LiveReport& report) {
   for (const LiveCueReport& cue : report.cues) {
     text += fmt::format("  cue {:<6} {:<24} {} node{} not right at its end", cue.number, cue.name, cue.unconfirmed,
                         cue.unconfirmed == 1 ? "" : "s");
-    text += cue.go_to_last_lamp_ms > 0 ? fmt::format("; GO to the last lamp {:.1f} ms\n", cue.go_to_last_lamp_ms) : "\n";
+    text +=
+        cue.go_to_last_lamp_ms > 0 ? fmt::format("; GO to the last lamp {:.1f} ms\n", cue.go_to_last_lamp_ms) : "\n";
   }
-  text += fmt::format("  {:<16} {:<11} {:>5} {:>11} {:>10} {:>8} {:>7} {:>6} {:>5} {:>10} {:>6}\n", "bus", "kind", "nodes",
-                      "deliveries", "unverified", "retries", "misses", "boots", "late", "lateness", "CPU");
+  text += fmt::format("  {:<16} {:<11} {:>5} {:>11} {:>10} {:>8} {:>7} {:>6} {:>5} {:>10} {:>6}\n", "bus", "kind",
+                      "nodes", "deliveries", "unverified", "retries", "misses", "boots", "late", "lateness", "CPU");
   for (const LiveBusReport& bus : report.buses) {
     text += fmt::format("  {:<16} {:<11} {:>5} {:>11} {:>10} {:>8} {:>7} {:>6} {:>5} {:>7.3f} ms {:>5.1f}%\n", bus.name,
                         bus.kind, bus.nodes, bus.deliveries, bus.unverified, bus.retries, bus.misses, bus.boots,
@@ -106,9 +110,10 @@ std::string live_text(const LiveReport& report) {
                       ratio(report.wake.p99_ms, report.bare.p99_ms), report.real_time ? "with" : "without");
   text += fmt::format("latches of a switch at most {:.3f} ms apart between buses\n", report.worst_skew_ms);
   if (report.deaf > 0) text += fmt::format("{} times a bus stood still, for the cue thread was silent\n", report.deaf);
-  text += fmt::format("{} deliveries, {} retries, {} late latches; {} node{} late at a switch, {} not right at the end\n",
-                      report.deliveries, report.retries, report.late_latches, report.late, report.late == 1 ? "" : "s",
-                      report.unconfirmed);
+  text +=
+      fmt::format("{} deliveries, {} retries, {} late latches; {} node{} late at a switch, {} not right at the end\n",
+                  report.deliveries, report.retries, report.late_latches, report.late, report.late == 1 ? "" : "s",
+                  report.unconfirmed);
   return text;
 }
 

@@ -14,6 +14,7 @@
 #include "app/live/shared_target.hpp"
 #include "app/live/waiting.hpp"
 #include "app/show_on_wires.hpp"
+#include "app/wire_log/logged_ports.hpp"
 #include "controller/lateness.hpp"
 #include "core/clock.hpp"
 
@@ -173,7 +174,9 @@ class LiveRun {
   Result<LiveReport> play();
 
  private:
-  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  [[nodiscard]] bool stopped() const {
+    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+  }
   [[nodiscard]] std::size_t unconfirmed() const {
     std::size_t sum = 0;
     for (const auto& bus : threads_) sum += bus->unconfirmed();
@@ -223,7 +226,8 @@ Result<LiveReport> LiveRun::play() {
   cue_.stop();
   for (const auto& bus : threads_) bus->stop();
   bare.stop();
-  if (stopped()) return Error{ErrorKind::interrupted, "interrupted: the lamps keep what they show until their lease ends"};
+  if (stopped())
+    return Error{ErrorKind::interrupted, "interrupted: the lamps keep what they show until their lease ends"};
   return report(bare, run);
 }
 
@@ -340,7 +344,8 @@ void LiveRun::report_cues(LiveReport& report) const {
           const Duration lit = latched + wires_.drivers[b]->latch_time() - cue_.go_at()[c];
           cue.go_to_last_lamp_ms = std::max(cue.go_to_last_lamp_ms, to_seconds(lit) * 1e3);
         }
-        cue.unconfirmed += end + 1 == switches.size() ? threads_[b]->unconfirmed() : threads_[b]->times()[end].unconfirmed;
+        cue.unconfirmed +=
+            end + 1 == switches.size() ? threads_[b]->unconfirmed() : threads_[b]->times()[end].unconfirmed;
       }
     }
     report.cues.push_back(std::move(cue));
@@ -350,7 +355,8 @@ void LiveRun::report_cues(LiveReport& report) const {
 void LiveRun::report_floor(LiveReport& report) const {
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
     const auto looks = wires_.schedule->looks_of(report.switches - 1, NodeIndex::of(n));
-    report.floor.emplace_back(looks.begin(), looks.begin() + static_cast<std::ptrdiff_t>(rig_.nodes[n].channels.size()));
+    report.floor.emplace_back(looks.begin(),
+                              looks.begin() + static_cast<std::ptrdiff_t>(rig_.nodes[n].channels.size()));
   }
 }
 
@@ -359,9 +365,13 @@ void LiveRun::report_floor(LiveReport& report) const {
 Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, const std::vector<drivers::Port>& ports,
                             const LiveOptions& options) {
   std::vector<std::unique_ptr<drivers::Driver>> drivers;
+  std::optional<LoggedPorts> logged;
+  if (options.wire_log != nullptr) logged.emplace(*options.wire_log);
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    drivers::PortReference port = drivers::reference(ports[b]);
+    if (logged) port = logged->before(b, rig.buses[b].kind, port);
     auto driver = drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, BusIndex::of(b)),
-                                       controller::plan_byte_of(plan), drivers::reference(ports[b]));
+                                       controller::plan_byte_of(plan), port);
     if (!driver) return std::move(driver).error();
     drivers.push_back(std::move(driver).value());
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/wire_log/wire_log.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
 #include "core/rig.hpp"
@@ -37,11 +38,11 @@ struct LiveBusReport {
   std::uint64_t boots = 0;
   std::uint64_t latches = 0;
   std::uint64_t late_latches = 0;
-  LatenessReport latch;  ///< of the last bit of the latches, as far as the bus can know
-  LatenessReport wake;   ///< of the thread: when it woke, behind when it wanted to
-  double cpu_share = 0;  ///< processor time of the thread over the time of the run
-  std::uint64_t unconfirmed = 0;     ///< nodes not confirmed right at the end
-  std::vector<std::string> silent;   ///< of them, nodes in quarantine
+  LatenessReport latch;             ///< of the last bit of the latches, as far as the bus can know
+  LatenessReport wake;              ///< of the thread: when it woke, behind when it wanted to
+  double cpu_share = 0;             ///< processor time of the thread over the time of the run
+  std::uint64_t unconfirmed = 0;    ///< nodes not confirmed right at the end
+  std::vector<std::string> silent;  ///< of them, nodes in quarantine
 };
 
 struct LiveCueReport {
@@ -80,6 +81,8 @@ struct LiveOptions {
   /// Of show time, with the nodes that are not right now.
   std::function<void(double share, std::size_t unconfirmed)> progress;
   std::function<void(const std::string& line)> moment;  ///< a line for each cue and switch
+  /// Told of all that goes over the wires, by the threads of the buses; borrowed. Null: nobody.
+  WireLog* wire_log = nullptr;
   /// The roll call is over: nodes that have not confirmed the opening.
   std::function<void(std::size_t unconfirmed)> ready;
 };

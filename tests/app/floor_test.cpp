@@ -29,8 +29,9 @@ TEST_F(FloorTest, TellsWhatHasChangedOnce) {
   Floor floor(show_, rig_);
   const auto changes = floor.look_at(simulated, instant_at(1.5));
   ASSERT_EQ(changes.size(), 5U) << "five lamps, all in NO-GUIDANCE";
-  EXPECT_EQ(floor.json(changes[4]),
-            R"({"t":1.5,"node":"bus1/2","channel":0,"cell":"A3","look":255,"colour":"#FFBF00","brightness":40,"effect":"steady"})");
+  EXPECT_EQ(
+      floor.json(changes[4]),
+      R"({"t":1.5,"node":"bus1/2","channel":0,"cell":"A3","look":255,"colour":"#FFBF00","brightness":40,"effect":"steady"})");
   EXPECT_TRUE(floor.look_at(simulated, instant_at(2)).empty());
   EXPECT_EQ(floor.json(instant_at(2)),
             R"({"t":2.0,"floor":[{"node":"bus1/1","looks":{"0":255,"1":255,"2":255,"3":255}},)"
@@ -45,8 +46,8 @@ TEST_F(FloorTest, UpstageIsAtTheTopAndTwoRowsShareALine) {
   const std::string amber = "40;30;0";  // #FFBF00 at 40 of 255
   const std::string none = "28;28;32";
   EXPECT_EQ(floor.picture(kStart, 80), "\x1B[38;2;" + amber + ";48;2;" + amber + "m\u2580\x1B[38;2;" + none + ";48;2;" +
-                                           amber + "m\u2580\x1B[0m\n\x1B[38;2;" + amber + ";49m\u2580\x1B[38;2;" + amber +
-                                           ";49m\u2580\x1B[0m\n");
+                                           amber + "m\u2580\x1B[0m\n\x1B[38;2;" + amber + ";49m\u2580\x1B[38;2;" +
+                                           amber + ";49m\u2580\x1B[0m\n");
 }
 
 TEST_F(FloorTest, ANarrowTerminalSeesTheMiddle) {

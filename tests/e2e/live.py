@@ -53,6 +53,12 @@ def make_cases(Case, footlight, program):
     """The test cases, over run.py's own `Case` and `footlight`; `program` gives the path of the program."""
 
     class Live(Case):
+        def setUp(self):
+            super().setUp()
+            old = os.environ.get("XDG_STATE_HOME")
+            os.environ["XDG_STATE_HOME"] = self.path("state")
+            self.addCleanup(lambda: os.environ.pop("XDG_STATE_HOME") if old is None else os.environ.update(XDG_STATE_HOME=old))
+
         def make_show(self, buses=("left", "middle", "right"), show=SHOW, profile=""):
             """The twelve people of `footlight new` on a rig of these buses, in six seconds."""
             footlight("new", self.path("s"))
@@ -265,5 +271,79 @@ def make_cases(Case, footlight, program):
                 held = json.load(f)
             for address, node in enumerate(report["floor"], 1):
                 self.assertEqual(held[str(address)], node["looks"], node["node"])
+
+        def tshark(self, file, display="", *options):
+            """Protocols of each packet that passes the filter, with CAN read as CANopen."""
+            done = subprocess.run(["tshark", "-r", file, "-d", "can.subdissector,canopen", *(["-Y", display] if display else []),
+                                   "-T", "fields", "-e", "frame.protocols", "-e", "_ws.col.Info", *options], capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return [line.split("\t") for line in done.stdout.splitlines()]
+
+        def assert_understood(self, file, kinds):
+            """tshark reads all of the file, finds nothing malformed, and knows each language for what it is."""
+            packets = self.tshark(file)
+            self.assertEqual(self.tshark(file, "_ws.malformed || tcp.checksum.status == 0 || _ws.expert.severity >= 0x00800000", "-o", "tcp.check_checksum:TRUE"), [])
+            self.assertEqual(self.tshark(file, "tcp.analysis.flags"), [], "one connection without a gap")
+            info = {protocol: [i for p, i in packets if p.split(":")[0] == protocol] for protocol in ("can", "ip", "exported_pdu", "rtacser")}
+            for kind in kinds:
+                self.assertGreater(len(info[kind]), 20, kind)
+            if "ip" in kinds:
+                self.assertTrue(all(p == "ip:tcp:mbtcp:modbus" for p, _ in packets if p.startswith("ip")))
+                self.assertTrue(any("Response: Trans:" in i and "Write Multiple Registers" in i for i in info["ip"]))
+            if "exported_pdu" in kinds:
+                # The dissector takes no unit 0: broadcasts are shown as bytes.
+                self.assertEqual({p for p, _ in packets if p.startswith("exported")}, {"exported_pdu:mbrtu:modbus", "exported_pdu:data"})
+                known = [i for i in info["exported_pdu"] if "Func:" in i]
+                self.assertTrue(any("Response: Unit:" in i and "Read Holding Registers" in i for i in known))
+                self.assertEqual(self.tshark(file, "exported_pdu && !mbrtu && !(data.data[0:1] == 00)"), [])
+                self.assertEqual(self.tshark(file, "mbrtu.crc16.status == 0", "-o", "mbrtu.crc_verification:TRUE"), [])
+            if "can" in kinds:
+                self.assertTrue(all(p == "can:canopen" for p, _ in packets if p.startswith("can")))
+                for word in ("SYNC", "NMT Error Control", "PDO1 (rx)", "NMT: Start remote node"):
+                    self.assertTrue(any(word in i for i in info["can"]), word)
+
+        def test_tshark_understands_the_wire_log_of_a_dry_run(self):
+            self.make_show()
+            with open(self.path("s", "rig.yaml")) as f:
+                rig = f.read()
+            with open(self.path("s", "rig.yaml"), "w") as f:
+                f.write(rig.replace("floor: {buses: [", "  - {name: far, kind: can, url: 'can://can0'}\nfloor: {buses: [far, "))
+            for name in ("one.pcapng", "two.pcapng"):
+                footlight("dryrun", self.show, "--wire-log", self.path(name))
+            with open(self.path("one.pcapng"), "rb") as one, open(self.path("two.pcapng"), "rb") as two:
+                self.assertEqual(one.read(), two.read(), "equal runs give equal logs")
+            self.assert_understood(self.path("one.pcapng"), ("can", "ip", "exported_pdu", "rtacser"))
+
+        def test_a_run_leaves_its_wires_and_the_bundle_packs_them(self):
+            self.make_show()
+            self.serve()
+            log = self.path("wires.pcapng")
+            report = self.play("--wire-log", log)
+            self.assert_understood(log, ("ip", "exported_pdu", "rtacser"))
+            before = time.time()
+            times = [float(t) for _, _, t in self.tshark(log, "", "-e", "frame.time_epoch")]
+            self.assertTrue(all(before - 600 < t < before + 1 for t in times), "the wall clock's time")
+            footlight("bundle", self.show, "-o", self.path("b.tar.gz"))
+            subprocess.run(["tar", "-xzf", self.path("b.tar.gz"), "-C", self.folder], check=True)
+            inside = self.path("footlight-bundle")
+            found = sorted(os.path.relpath(os.path.join(folder, name), inside) for folder, _, names in os.walk(inside) for name in names)
+            self.assertEqual(found, ["run/moments.txt", "run/report.json", "run/run.json", "show/rig.yaml", "show/show.yaml", "versions.txt", "wires.pcapng"])
+            self.assertEqual(len(self.tshark(os.path.join(inside, "wires.pcapng"))), len(times), "the ring has what the file has")
+            with open(os.path.join(inside, "run", "report.json")) as f:
+                self.assertEqual(json.load(f), report)
+            with open(os.path.join(inside, "run", "moments.txt")) as f:
+                self.assertEqual(len(f.read().splitlines()), report["switches"] - 1)
+
+        def test_the_ring_is_there_after_a_kill(self):
+            self.make_show()
+            self.serve()
+            run = self.start(program(), "run", self.show, "--transport-map", self.map, "--go", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            wait_for(lambda: any(c["look"] not in (0, 255) for c in self.changes()), "the opening")
+            time.sleep(0.5)
+            run.kill()
+            run.wait()
+            footlight("bundle", "-o", self.path("b.tar.gz"))
+            subprocess.run(["tar", "-xzf", self.path("b.tar.gz"), "-C", self.folder], check=True)
+            self.assertGreater(len(self.tshark(self.path("footlight-bundle", "wires.pcapng"))), 50)
 
     return Live

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/wire_log/wire_log.hpp"
+#include "drivers/registry.hpp"
+
+namespace footlight::app {
+
+/// Ports that do what other ports do and tell a log of it: the same for the simulated wires of a dry run and for real
+/// ones. What a Modbus library does not hand out is put together again from request and reply: check sums, transaction
+/// numbers, and for TCP the headers below. A reply that was garbled or did not come is not there.
+class LoggedPorts {
+ public:
+  /// @param log borrowed, as are the ports
+  explicit LoggedPorts(WireLog& log) : log_(log) {}
+  /// @return a port in front of `port`, owned by this object
+  [[nodiscard]] drivers::PortReference before(std::size_t bus, BusKind kind, drivers::PortReference port);
+
+ private:
+  WireLog& log_;
+  std::vector<drivers::Port> owned_;
+};
+
+}  // namespace footlight::app
