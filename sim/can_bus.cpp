@@ -15,6 +15,14 @@ using drivers::SendStatus;
 constexpr Duration kLongestStatusDelay = milliseconds(5);
 constexpr Duration kHeartbeatPeriod = milliseconds(1000);
 constexpr std::size_t kReceiveQueue = 8192;
+constexpr Duration kRestartTime = milliseconds(100);
+constexpr Duration kShortestJam = milliseconds(50);
+constexpr Duration kLongestJam = milliseconds(500);
+constexpr Duration kUnplugged = milliseconds(1000);
+constexpr Duration kStallTime = milliseconds(70);
+// Classes of error frames, as of linux/can/error.h.
+constexpr std::uint16_t kErrorBusOff = 0x40;
+constexpr std::uint16_t kErrorRestarted = 0x100;
 constexpr int kErrorFlagBits = 6;
 constexpr int kErrorDelimiterBits = 8;
 
@@ -24,6 +32,18 @@ std::string text_of(const CanFrame& frame) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   for (unsigned i = 0; i < 3; ++i) text[i] = kDigits[(frame.id >> (8U - 4U * i)) & 0xFU];
   return text + to_hex(std::span(frame.data).first(frame.length));
+}
+
+std::string to_text(LineFault fault) {
+  switch (fault) {
+    case LineFault::bus_off:
+      return "bus-off";
+    case LineFault::full:
+      return "nothing leaves";
+    case LineFault::unplug:
+      return "unplugged";
+  }
+  return {};
 }
 
 }  // namespace
@@ -79,6 +99,9 @@ void CanBus::act(std::uint64_t token_of_event) {
     case kStatusDue:
       if (nodes_[slot]->epoch() == generation_of(token_of_event)) want(slot, markers_[slot].status());
       return;
+    case kLineBack:
+      line_back();
+      return;
     default:
       if (nodes_[slot]->epoch() != generation_of(token_of_event)) return;
       want(slot, markers_[slot].heartbeat());
@@ -89,7 +112,9 @@ void CanBus::act(std::uint64_t token_of_event) {
 
 SendStatus CanBus::send(const CanFrame& frame) {
   FL_CHECK(frame.kind == CanFrame::Kind::classic && frame.length <= 8 && frame.id <= 0x7FF);
+  if (line_ != drivers::CanState::active) return SendStatus::down;
   if (queued() >= kQueue) return SendStatus::busy;
+  if (queue_.empty()) progress_ = around_.world.now();
   queue_.push_back(frame);
   wake();
   return SendStatus::accepted;
@@ -128,11 +153,12 @@ void CanBus::start_next() {
     std::pop_heap(wishes_.begin(), wishes_.end(), yields);  // of a node that has been switched off since
     wishes_.pop_back();
   }
-  if (queue_.empty() && wishes_.empty()) return;
+  const bool may_speak = controller_may_speak();
+  if (!may_speak && wishes_.empty()) return;
   busy_ = true;
-  const bool controller = wishes_.empty() || (!queue_.empty() && queue_.front().id <= wishes_.front().frame.id);
+  const bool controller = wishes_.empty() || (may_speak && queue_.front().id <= wishes_.front().frame.id);
   if (controller) {
-    now_sending_ = {queue_.front(), kController, 0, Fate::good, 0};
+    now_sending_ = {queue_.front(), kController, 0, Fate::good, line_epoch_};
   } else {
     const Wish& wish = wishes_.front();
     now_sending_ = {wish.frame, static_cast<int>(wish.slot), wish.epoch, Fate::good, wish.order};
@@ -186,7 +212,10 @@ void CanBus::end() {
   if (!cut && (done.fate == Fate::good || done.fate == Fate::repeated)) deliver();
   const Fate fate = done.fate;
   if (done.speaker == kController) {
-    if (fate == Fate::good) queue_.pop_front();
+    if (fate == Fate::good && !cut) {
+      queue_.pop_front();
+      progress_ = around_.world.now();
+    }
   } else if (fate != Fate::good && !cut) {
     wishes_.push_back({done.frame, done.order, static_cast<std::size_t>(done.speaker), done.epoch});
     std::push_heap(wishes_.begin(), wishes_.end(), yields);
@@ -220,6 +249,7 @@ void CanBus::draw_losses(std::string& note) {
 
 void CanBus::deliver() {
   if (now_sending_.speaker != kController) {
+    if (line_ != drivers::CanState::active) return;
     if (!controller_missed_ && received_.size() < kReceiveQueue) received_.push_back(now_sending_.frame);
     return;
   }
@@ -253,8 +283,47 @@ void CanBus::deliver_to(std::size_t slot) {
 }
 
 bool CanBus::cut_off(const Transmission& transmission) const {
+  if (transmission.speaker == kController) return transmission.order != line_epoch_;
   return transmission.speaker >= 0 &&
          nodes_[static_cast<std::size_t>(transmission.speaker)]->epoch() != transmission.epoch;
 }
+
+bool CanBus::controller_may_speak() const {
+  return !queue_.empty() && line_ == drivers::CanState::active && around_.world.now() >= line_back_at_;
+}
+
+drivers::CanState CanBus::state() const {
+  if (line_ != drivers::CanState::active) return line_;
+  const bool waits = !queue_.empty() && around_.world.now() >= progress_ + kStallTime;
+  return waits ? drivers::CanState::stalled : drivers::CanState::active;
+}
+
+bool CanBus::strike(LineFault fault) {
+  const Instant now = around_.world.now();
+  Duration length = kRestartTime;
+  if (fault == LineFault::full) {
+    length = kShortestJam + around_.timing.up_to(kLongestJam - kShortestJam);
+  } else {
+    if (fault == LineFault::unplug) length = kUnplugged;
+    line_ = fault == LineFault::unplug ? drivers::CanState::down : drivers::CanState::bus_off;
+    queue_.clear();
+    received_.clear();
+    ++line_epoch_;
+    if (fault == LineFault::bus_off) tell(kErrorBusOff);
+  }
+  if (around_.trace.on()) around_.trace.line(now, bus_.name, '*', {}, to_text(fault));
+  line_back_at_ = std::max(line_back_at_, now + length);
+  around_.world.schedule(line_back_at_, *this, token(kLineBack, 0, 0));
+  return true;
+}
+
+void CanBus::line_back() {
+  if (around_.world.now() != line_back_at_) return;  // struck once more meanwhile
+  if (line_ == drivers::CanState::bus_off) tell(kErrorRestarted);
+  line_ = drivers::CanState::active;
+  wake();
+}
+
+void CanBus::tell(std::uint16_t error_classes) { received_.push_back({error_classes, 8, {}, CanFrame::Kind::error}); }
 
 }  // namespace footlight::sim

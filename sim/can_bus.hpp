@@ -16,8 +16,10 @@ namespace footlight::sim {
 ///
 /// A disturbed frame ends at a random bit with 6 bits of error flag, 0..6 of its echo, 8 of delimiter and 3 of
 /// inter-frame space; one that nobody acknowledges ends so at its acknowledge slot. A duplicated frame was received,
-/// but its sender saw an error in the last bit of the end of frame and sends it again. Error counters and bus-off are
-/// not modelled.
+/// but its sender saw an error in the last bit of the end of frame and sends it again.
+///
+/// Error counters are not modelled; bus-off comes as a fault: the queue is lost, nothing is heard, and after 100 ms the
+/// interface restarts, both told by error frames. A queue that does not move for 70 ms is stalled, as in the transport.
 class CanBus final : public SimulatedBus, public drivers::CanPort {
  public:
   /// The queue of a Linux CAN interface (txqueuelen).
@@ -35,13 +37,15 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
   bool receive(drivers::CanFrame& frame) override;
   [[nodiscard]] Duration wire_time(const drivers::CanFrame& frame) const override;
   [[nodiscard]] std::size_t queued() const override {
-    return queue_.size() - (now_sending_.speaker == kController ? 1 : 0);
+    const bool one_is_leaving = now_sending_.speaker == kController && now_sending_.order == line_epoch_;
+    return queue_.size() - (one_is_leaving ? 1 : 0);
   }
-  [[nodiscard]] drivers::CanState state() const override { return drivers::CanState::active; }
+  [[nodiscard]] drivers::CanState state() const override;
+  bool strike(LineFault fault) override;
 
  private:
   static constexpr int kNobody = -2;
-  enum Kind : unsigned { kIdle, kEnd, kStatusDue, kHeartbeatDue };
+  enum Kind : unsigned { kIdle, kEnd, kStatusDue, kHeartbeatDue, kLineBack };
   enum class Fate { good, repeated, disturbed, unacknowledged };
 
   /// What a node wants to send.
@@ -59,6 +63,9 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
     std::uint64_t order = 0;
   };
 
+  void line_back();
+  void tell(std::uint16_t error_classes);
+  [[nodiscard]] bool controller_may_speak() const;
   void want(std::size_t slot, const drivers::CanFrame& frame);
   void wake();
   void start_next();
@@ -88,6 +95,10 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
   bool controller_missed_ = false;
   std::size_t powered_ = 0;
   std::uint64_t order_ = 0;
+  drivers::CanState line_ = drivers::CanState::active;  ///< active, bus_off or down
+  std::uint64_t line_epoch_ = 0;                        ///< counts the times that the queue was lost
+  Instant line_back_at_ = kStart;                       ///< until then it is so, or nothing leaves the queue
+  Instant progress_ = kStart;  ///< when a frame of the controller left last, or began to wait alone
 };
 
 }  // namespace footlight::sim

@@ -77,6 +77,9 @@ Status<> set(Faults& faults, std::string_view part, std::string_view key, std::s
   if (key == "until") return set_share(part, value, 1, "a share of 0 to 100%, as until=80%", faults.until);
   if (key == "reboot") return set_count(part, value, "a number of restarts, 0 to 10000, as reboot=2", faults.reboot);
   if (key == "dead") return set_count(part, value, "a number of nodes, 0 to 10000, as dead=1", faults.dead);
+  if (key == "bus-off") return set_count(part, value, "a number of times, 0 to 10000, as bus-off=2", faults.bus_off);
+  if (key == "full") return set_count(part, value, "a number of times, 0 to 10000, as full=2", faults.full);
+  if (key == "unplug") return set_count(part, value, "a number of times, 0 to 10000, as unplug=2", faults.unplug);
   if (key == "delay") {
     const auto parsed = time(value);
     if (!parsed || *parsed < Duration{} || *parsed > std::chrono::seconds(1)) {
@@ -87,7 +90,7 @@ Status<> set(Faults& faults, std::string_view part, std::string_view key, std::s
   }
   return input_error("faults: \"" + std::string(part) +
                      "\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, late=10%, "
-                     "reboot=2, dead=1, until=80%, separated by commas)");
+                     "reboot=2, bus-off=2, full=2, unplug=1, dead=1, until=80%, separated by commas)");
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ class SimulatedBus : public Actor {
     around_.faults.end();
     around_.timing.end();
   }
+  /// @return false: this kind of bus knows no such fault, and nothing happens
+  virtual bool strike(LineFault /*fault*/) { return false; }
   virtual void power_off(std::size_t slot) = 0;
   virtual void power_on(std::size_t slot) = 0;
 

@@ -24,10 +24,12 @@ constexpr Duration kOffTime = milliseconds(300);
 // Streams of the rig's generator; each bus splits its own in two.
 constexpr std::uint64_t kDeadStream = 1'000'000;
 constexpr std::uint64_t kRebootStream = 1'000'001;
+constexpr std::uint64_t kLineStream = 1'000'002;
 constexpr std::uint64_t kFaultStream = 0;
 constexpr std::uint64_t kTimingStream = 1;
 
 constexpr std::uint64_t kEndOfFaults = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kLineFault = std::uint64_t{1} << 62U;  ///< and the number of the fault
 
 std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surroundings) {
   switch (bus.kind) {
@@ -79,6 +81,33 @@ std::vector<Reboot> draw_reboots(std::size_t nodes, const std::vector<NodeIndex>
   return reboots;
 }
 
+struct StruckLine {
+  std::size_t bus;
+  LineFault fault;
+  Instant at;
+};
+
+/// Of the CAN buses: no other kind of wire goes down here.
+std::vector<StruckLine> draw_line_faults(const Rig& rig, const Faults& faults, Instant from, Duration length, Rng rng) {
+  std::vector<std::size_t> buses;
+  for (std::size_t i = 0; i < rig.buses.size(); ++i) {
+    if (rig.buses[i].kind == BusKind::can) buses.push_back(i);
+  }
+  std::vector<StruckLine> struck;
+  if (buses.empty() || length <= Duration{}) return struck;
+  const auto draw = [&](LineFault fault, int wanted) {
+    for (int i = 0; i < wanted; ++i) {
+      const std::size_t bus = buses[rng.below(buses.size())];
+      const auto after = static_cast<Duration::rep>(rng.below(static_cast<std::uint64_t>(length.count())));
+      struck.push_back({bus, fault, from + Duration(after)});
+    }
+  };
+  draw(LineFault::bus_off, faults.bus_off);
+  draw(LineFault::full, faults.full);
+  draw(LineFault::unplug, faults.unplug);
+  return struck;
+}
+
 }  // namespace
 
 /// Also the hand on the switches: its events take the power from nodes and give it back.
@@ -94,6 +123,11 @@ struct SimulatedRig::State final : Actor {
   void act(std::uint64_t token) override {
     if (token == kEndOfFaults) {
       end_faults();
+      return;
+    }
+    if ((token & kLineFault) != 0) {
+      const StruckLine& line = struck.at(token ^ kLineFault);
+      buses.at(line.bus)->strike(line.fault);
       return;
     }
     const auto [bus, slot] = places.at(token / 2);
@@ -126,6 +160,7 @@ struct SimulatedRig::State final : Actor {
   std::vector<std::unique_ptr<SimulatedBus>> buses;
   std::vector<Place> places;  ///< by node
   std::vector<Reboot> reboots;
+  std::vector<StruckLine> struck;
   std::vector<NodeIndex> dead;
   Instant faults_end = kNever;
 };
@@ -162,6 +197,10 @@ void SimulatedRig::set_show(Instant start, Duration length) {
       draw_reboots(state.rig.nodes.size(), state.dead, faults_.reboot, start, faulty, Rng(seed_).split(kRebootStream));
   for (const Reboot& reboot : state.reboots) {
     state.world.schedule(reboot.at, state, 2 * std::uint64_t{reboot.node.value()});
+  }
+  state.struck = draw_line_faults(state.rig, faults_, start, faulty, Rng(seed_).split(kLineStream));
+  for (std::size_t i = 0; i < state.struck.size(); ++i) {
+    state.world.schedule(state.struck[i].at, state, kLineFault | i);
   }
 }
 
@@ -204,6 +243,8 @@ Look SimulatedRig::lamp(NodeIndex node, int channel) const {
 void SimulatedRig::end_faults() { state_->end_faults(); }
 
 Instant SimulatedRig::faults_end() const { return state_->faults_end; }
+
+bool SimulatedRig::strike(BusIndex bus, LineFault fault) { return state_->buses.at(bus.at())->strike(fault); }
 
 bool SimulatedRig::powered(NodeIndex node) const {
   const auto [bus, slot] = state_->places.at(node.at());

@@ -61,6 +61,8 @@ class SimulatedRig {
   void end_faults();
   /// When that was; kNever before.
   [[nodiscard]] Instant faults_end() const;
+  /// Lets it happen to a bus now. @return false: that kind of bus knows no such fault
+  bool strike(BusIndex bus, LineFault fault);
   /// What a lamp shows now.
   [[nodiscard]] LookIndex shown(NodeIndex node, int channel) const;
   /// How it looks now: the entry of the node's own table; black without power; white and blinking when it identifies

@@ -64,6 +64,8 @@ Instant CanEndpoint::step(Instant now) {
   while (!said_.empty()) {
     struct can_frame raw {};
     raw.can_id = said_.front().id;
+    // A program may say error frames itself; on a virtual interface the others hear them as the kernel's.
+    if (said_.front().kind == drivers::CanFrame::Kind::error) raw.can_id |= CAN_ERR_FLAG;
     raw.can_dlc = said_.front().length;
     std::copy_n(said_.front().data.begin(), raw.can_dlc, raw.data);
     // ENOBUFS: the interface's queue is full. A moment later it is not, or nobody is there who could listen.

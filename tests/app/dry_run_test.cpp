@@ -125,6 +125,15 @@ TEST(DryRun, EveryMarkerIsRightTwoRefreshPeriodsAfterTheLastFaultOnEveryBus) {
   }
 }
 
+TEST(DryRun, EveryMarkerIsRightAfterBusOffJamsAndUnpluggingOfCan) {
+  const SmallShow small = show_on(BusKind::can);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const DryRunReport report = report_of(small, "loss=5%,bus-off=6,full=6,unplug=2,until=50%", seed);
+    EXPECT_EQ(report.wrong_after_recovery, 0U) << "seed " << seed << "\n" << trouble(report);
+    EXPECT_LT(report.right_share, 1) << "faults that change nothing prove nothing";
+  }
+}
+
 TEST(DryRun, TheSameSeedGivesTheSameTraceByteForByte) {
   const SmallShow small = small_show();
   std::vector<std::string> traces;

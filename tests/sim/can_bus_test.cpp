@@ -206,5 +206,81 @@ TEST(CanBus, NobodyAcknowledgesWhenTheOnlyNodeHasNoPower) {
   EXPECT_EQ(frames(bench).back(), "701#00") << "the frame has arrived, the boot-up message after it";
 }
 
+TEST(CanBus, BusOffLosesTheQueueAndEndsAfter100MillisecondsBothToldByErrorFrames) {
+  Bench bench(can_rig(1));
+  auto& port = bench.simulated.can(BusIndex(0));
+  for (int i = 0; i < 5; ++i) port.send(frame(0x201, {i}));
+  bench.run_for(microseconds(50));
+  ASSERT_TRUE(bench.simulated.strike(BusIndex(0), LineFault::bus_off));
+  EXPECT_EQ(port.state(), drivers::CanState::bus_off);
+  EXPECT_EQ(port.queued(), 0U);
+  EXPECT_EQ(port.send(frame(0x201, {9})), SendStatus::down);
+  CanFrame told;
+  ASSERT_TRUE(port.receive(told));
+  EXPECT_EQ(told.kind, CanFrame::Kind::error);
+  EXPECT_EQ(told.id, 0x40);
+  bench.run_for(milliseconds(99));
+  EXPECT_EQ(port.state(), drivers::CanState::bus_off);
+  bench.run_for(milliseconds(1));
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+  ASSERT_TRUE(port.receive(told));
+  EXPECT_EQ(told.id, 0x100);
+  EXPECT_EQ(port.send(frame(0x202, {1})), SendStatus::accepted);
+  bench.run_for(milliseconds(1));
+  EXPECT_EQ(port.queued(), 0U);
+  EXPECT_THAT(frames(bench), ElementsAre("201#00 cut off", "202#01"));
+}
+
+TEST(CanBus, AJammedQueueFillsStallsAndEmptiesAfterwards) {
+  Bench bench(can_rig(1));
+  auto& port = bench.simulated.can(BusIndex(0));
+  ASSERT_TRUE(bench.simulated.strike(BusIndex(0), LineFault::full));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(port.send(frame(0x201, {i})), SendStatus::accepted);
+  EXPECT_EQ(port.send(frame(0x201, {10})), SendStatus::busy);
+  bench.run_for(milliseconds(49));
+  EXPECT_EQ(port.queued(), 10U);
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+  bench.run_for(milliseconds(500));
+  EXPECT_EQ(port.queued(), 0U);
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+}
+
+TEST(CanBus, FramesThatNobodyAcknowledgesStallTheWireAfter70Milliseconds) {
+  Bench bench(can_rig(1), *Faults::parse("dead=1"));
+  auto& port = bench.simulated.can(BusIndex(0));
+  port.send(frame(0x77F, {5}));
+  bench.run_for(milliseconds(69));
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+  bench.run_for(milliseconds(2));
+  EXPECT_EQ(port.state(), drivers::CanState::stalled);
+}
+
+TEST(CanBus, AnAdapterThatIsPulledOutHearsNothingAndComesBackAfterASecond) {
+  Bench bench(can_rig(3));
+  auto& port = bench.simulated.can(BusIndex(0));
+  ASSERT_TRUE(bench.simulated.strike(BusIndex(0), LineFault::unplug));
+  EXPECT_EQ(port.state(), drivers::CanState::down);
+  EXPECT_EQ(port.send(frame(0x201, {1})), SendStatus::down);
+  bench.run_for(milliseconds(999));
+  CanFrame heard;
+  EXPECT_FALSE(port.receive(heard)) << "the nodes' heartbeats of this second are not heard";
+  bench.run_for(milliseconds(1));
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+  bench.run_for(milliseconds(1000));
+  EXPECT_TRUE(port.receive(heard));
+}
+
+TEST(CanBus, AFaultDuringAFaultLastsUntilTheLaterEnd) {
+  Bench bench(can_rig(1));
+  auto& port = bench.simulated.can(BusIndex(0));
+  bench.simulated.strike(BusIndex(0), LineFault::unplug);
+  bench.run_for(milliseconds(500));
+  bench.simulated.strike(BusIndex(0), LineFault::bus_off);
+  bench.run_for(milliseconds(499));
+  EXPECT_NE(port.state(), drivers::CanState::active);
+  bench.run_for(milliseconds(1));
+  EXPECT_EQ(port.state(), drivers::CanState::active);
+}
+
 }  // namespace
 }  // namespace footlight::sim

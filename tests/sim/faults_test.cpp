@@ -12,7 +12,8 @@ std::string message(std::string_view text) {
 }
 
 TEST(Faults, EveryPartIsRead) {
-  const auto faults = Faults::parse("loss=5%,corrupt=0.01,duplicate=50%,delay=3ms,late=10%,reboot=2,dead=1");
+  const auto faults =
+      Faults::parse("loss=5%,corrupt=0.01,duplicate=50%,delay=3ms,late=10%,reboot=2,bus-off=3,full=4,unplug=5,dead=1");
   ASSERT_TRUE(faults.has_value());
   EXPECT_DOUBLE_EQ(faults->loss, 0.05);
   EXPECT_DOUBLE_EQ(faults->corrupt, 0.01);
@@ -20,6 +21,9 @@ TEST(Faults, EveryPartIsRead) {
   EXPECT_EQ(faults->delay, milliseconds(3));
   EXPECT_DOUBLE_EQ(faults->late, 0.1);
   EXPECT_EQ(faults->reboot, 2);
+  EXPECT_EQ(faults->bus_off, 3);
+  EXPECT_EQ(faults->full, 4);
+  EXPECT_EQ(faults->unplug, 5);
   EXPECT_EQ(faults->dead, 1);
 }
 
@@ -33,7 +37,7 @@ TEST(Faults, TheLargestSharesAreAllowed) {
 TEST(Faults, WrongPartsAreNamedWithWhatWouldBeRight) {
   EXPECT_EQ(message("lost=5%"),
             "faults: \"lost=5%\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, late=10%, "
-            "reboot=2, dead=1, until=80%, separated by commas)");
+            "reboot=2, bus-off=2, full=2, unplug=1, dead=1, until=80%, separated by commas)");
   EXPECT_EQ(message("loss=31%"), "faults: \"loss=31%\" is wrong (a share of 0 to 30%, as loss=5%)");
   EXPECT_EQ(message("corrupt=-1%"), "faults: \"corrupt=-1%\" is wrong (a share of 0 to 30%, as corrupt=1%)");
   EXPECT_EQ(message("duplicate=nan"), "faults: \"duplicate=nan\" is wrong (a share of 0 to 50%, as duplicate=1%)");
@@ -43,12 +47,13 @@ TEST(Faults, WrongPartsAreNamedWithWhatWouldBeRight) {
             "faults: \"delay=1e300s\" is wrong (a time of 0 to 1 s with its unit us, ms or s, as delay=3ms)");
   EXPECT_EQ(message("reboot=2.5"), "faults: \"reboot=2.5\" is wrong (a number of restarts, 0 to 10000, as reboot=2)");
   EXPECT_EQ(message("late=101%"), "faults: \"late=101%\" is wrong (a share of 0 to 100%, as late=10%)");
+  EXPECT_EQ(message("bus-off=x"), "faults: \"bus-off=x\" is wrong (a number of times, 0 to 10000, as bus-off=2)");
   EXPECT_EQ(message("dead="), "faults: \"dead=\" is wrong (a number of nodes, 0 to 10000, as dead=1)");
   EXPECT_EQ(message("loss"), "faults: \"loss\" is wrong (a share of 0 to 30%, as loss=5%)");
   EXPECT_EQ(message("loss=1%,loss=2%"), "faults: \"loss=2%\" is wrong (loss is given twice; once is right)");
   EXPECT_EQ(message("loss=1%,,dead=1"),
             "faults: \"\" is unknown (possible are loss=5%, corrupt=1%, duplicate=1%, delay=3ms, late=10%, "
-            "reboot=2, dead=1, until=80%, separated by commas)");
+            "reboot=2, bus-off=2, full=2, unplug=1, dead=1, until=80%, separated by commas)");
 }
 
 TEST(Chance, OnlyAShareOfTheAnswersIsLate) {
