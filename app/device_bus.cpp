@@ -32,6 +32,16 @@ Result<Bus> bus_of_url(const DeviceBusChoice& choice) {
   bus.url = choice.bus;
   bus.bits_per_second = *kind == BusKind::can ? 500'000 : 115'200;
   if (choice.bits_per_second > 0) bus.bits_per_second = choice.bits_per_second;
+  if (*kind == BusKind::dmx && choice.profile.empty()) return bus;
+  if (*kind == BusKind::dmx) {
+    const auto file = config::find_profile(choice.profile, std::filesystem::current_path());
+    Diagnostics diagnostics;
+    if (file) bus.fixture = config::read_fixture(*file, diagnostics);
+    if (!bus.fixture)
+      return input_error(file ? diagnostics.to_text()
+                              : "there is no device profile " + config::in_quotes(choice.profile));
+    return bus;
+  }
   if (*kind != BusKind::modbus_rtu && *kind != BusKind::modbus_tcp) return bus;
   if (choice.profile.empty()) {
     bus.profile = config::footlight_marker_profile();

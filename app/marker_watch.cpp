@@ -45,8 +45,11 @@ void MarkerWatch::follow(std::size_t k) {
 
 bool MarkerWatch::shows(NodeIndex node, std::size_t channel, LookIndex look) const {
   const Look& meant = look == kNoGuidance ? no_guidance_look_ : schedule_.looks()[look];
-  return simulated_.shown(node, static_cast<int>(channel)) ==
-         drivers::shown_for(rig_.buses[rig_.nodes[node.at()].bus.at()], look, meant);
+  const Bus& bus = rig_.buses[rig_.nodes[node.at()].bus.at()];
+  if (bus.kind == BusKind::dmx) {
+    return drivers::levels_show(bus, meant, simulated_.levels(node, static_cast<int>(channel)));
+  }
+  return simulated_.shown(node, static_cast<int>(channel)) == drivers::shown_for(bus, look, meant);
 }
 
 bool MarkerWatch::may_show(const Marker& marker) const {

@@ -31,14 +31,13 @@ const char* simulated_url(BusKind kind) {
 drivers::PortReference port_of(sim::SimulatedRig& simulated, const Rig& rig, BusIndex bus) {
   switch (rig.buses[bus.at()].kind) {
     case BusKind::serial:
+    case BusKind::dmx:
       return &simulated.serial(bus);
     case BusKind::can:
       return &simulated.can(bus);
     case BusKind::modbus_rtu:
     case BusKind::modbus_tcp:
       return &simulated.modbus(bus);
-    case BusKind::dmx:
-      break;
   }
   return {};
 }

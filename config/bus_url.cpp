@@ -17,10 +17,12 @@ constexpr std::array kSchemes{
     Scheme{"sim://rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/..."},
     Scheme{"sim://tcp", BusKind::modbus_tcp, "tcp://host:502"},
     Scheme{"sim://can", BusKind::can, "can://can0"},
+    Scheme{"sim://dmx", BusKind::dmx, "dmx:///dev/serial/by-id/..."},
     Scheme{"serial://", BusKind::serial, ""},
     Scheme{"rtu://", BusKind::modbus_rtu, ""},
     Scheme{"tcp://", BusKind::modbus_tcp, ""},
     Scheme{"can://", BusKind::can, ""},
+    Scheme{"dmx://", BusKind::dmx, ""},
 };
 
 }  // namespace
@@ -51,7 +53,8 @@ std::string urls_of(BusKind kind) {
 }
 
 std::string known_urls() {
-  return "serial:///dev/..., rtu:///dev/..., tcp://host:502, can://can0, sim://serial, sim://rtu, sim://tcp, sim://can";
+  return "serial:///dev/..., rtu:///dev/..., tcp://host:502, can://can0, dmx:///dev/..., sim://serial, sim://rtu, "
+         "sim://tcp, sim://can, sim://dmx";
 }
 
 }  // namespace footlight::config

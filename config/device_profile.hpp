@@ -14,6 +14,9 @@ namespace footlight::config {
 /// Reads drivers/profiles/*.yaml or a file of that kind; nothing after an error.
 [[nodiscard]] std::optional<ModbusProfile> read_profile(const std::filesystem::path& file, Diagnostics& diagnostics);
 
+/// The same for the lamps of a DMX line.
+[[nodiscard]] std::optional<DmxFixture> read_fixture(const std::filesystem::path& file, Diagnostics& diagnostics);
+
 /// Where a profile is. A name that ends in .yaml or .yml is a file relative to `folder`; another one is a shipped
 /// profile: in $FOOTLIGHT_DATA/profiles, in ../share/footlight/profiles beside the program, or in the source tree.
 /// Nothing when there is none.

@@ -142,7 +142,9 @@ Field at_register(std::string_view key, std::string_view doc, std::string_view o
 const Listing& profile_listing() {
   static const Listing kListing{
       "drivers/profiles/*.yaml",
-      "Where a Modbus device keeps what; numbers of registers and coils from 0, decimal or 0x....",
+      "Where a Modbus device keeps what, numbers of registers and coils from 0, decimal or 0x...; or the slots of a "
+      "DMX "
+      "lamp.",
       {
           {.key = "profile",
            .type = Type::integer,
@@ -160,6 +162,11 @@ const Listing& profile_listing() {
            .doc = "First register of the preload block: the sequence, where there is one, then the looks.",
            .range = kRegister},
           {.key = "look_coil", .type = Type::integer, .doc = "First coil: a lamp is on or off.", .range = kRegister},
+          {.key = "lamp_slots",
+           .type = Type::choice,
+           .doc = "DMX: what the slots of one lamp are, in their order.",
+           .choices = {"dimmer", "red", "green", "blue", "white", "amber", "zero", "full"},
+           .list = true},
           {.key = "looks_per_register",
            .type = Type::integer,
            .doc = "With 2 the lower channel stands in the high byte.",
@@ -227,7 +234,7 @@ const Listing& profile_listing() {
            .fallback = "0 s",
            .range = {0, 1}},
       },
-      "look_register look_coil"};
+      "look_register look_coil lamp_slots"};
   return kListing;
 }
 

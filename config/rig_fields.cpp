@@ -14,12 +14,12 @@ const Listing& bus_listing() {
            .type = Type::choice,
            .doc = "The language on the wire; the URL must fit.",
            .otherwise = "as the URL says",
-           .choices = {"serial", "modbus-rtu", "modbus-tcp", "can"}},
+           .choices = {"serial", "modbus-rtu", "modbus-tcp", "can", "dmx"}},
           {.key = "url",
            .type = Type::text,
            .doc = "`serial:///dev/serial/by-id/...`, `rtu:///dev/...`, by the adapter's USB serial number "
                   "`serial://usb/NUMBER` and `rtu://usb/NUMBER`, `tcp://host:502`, `can://can0`, or without hardware "
-                  "`sim://serial`, `sim://rtu`, `sim://tcp`, `sim://can`.",
+                  "`sim://serial`, `sim://rtu`, `sim://tcp`, `sim://can`, `sim://dmx`.",
            .required = true},
           {.key = "bits_per_second",
            .type = Type::integer,
@@ -28,9 +28,9 @@ const Listing& bus_listing() {
            .range = {1200, 4'000'000}},
           {.key = "profile",
            .type = Type::text,
-           .doc = "Modbus: name of a shipped device profile (footlight-marker, pick-light, relay-16), or a YAML file "
-                  "beside the rig.",
-           .otherwise = "footlight-marker"},
+           .doc = "Modbus and DMX: name of a shipped device profile (footlight-marker, pick-light, relay-16; dmx-rgb, "
+                  "dmx-dimmer), or a YAML file beside the rig.",
+           .otherwise = "footlight-marker; DMX dmx-rgb"},
           {.key = "supply",
            .type = Type::text,
            .doc = "Power supply of its nodes, for those that name none; `footlight dark` asks what hangs on it.",
@@ -75,9 +75,10 @@ const Listing& node_listing() {
           {.key = "bus", .type = Type::text, .doc = "Name of its bus.", .required = true},
           {.key = "address",
            .type = Type::integer,
-           .doc = "Unique on its bus: CAN 1 to 126, Modbus 1 to 247, serial 1 to 254.",
+           .doc = "Unique on its bus: CAN 1 to 126, Modbus 1 to 247, serial 1 to 254; DMX: the first slot of "
+                  "its first lamp, 1 to 512.",
            .required = true,
-           .range = {1, 254}},
+           .range = {1, 512}},
           {.key = "channels",
            .type = Type::lamp,
            .doc = "1 to 32 lamps, channel 0 first: cells (`A1`), ranges of cells (`A1:H4`, row by row from A1, "

@@ -134,27 +134,31 @@ class RigReader {
 
   void read_bus_profile(MappingReader& reader, Bus& bus) {
     const bool modbus = bus.kind == BusKind::modbus_rtu || bus.kind == BusKind::modbus_tcp;
-    if (!modbus) {
+    if (!modbus && bus.kind != BusKind::dmx) {
       if (reader.has("profile")) {
         reader.error(reader.key_position("profile"), reader.path("profile"), "the key has no meaning here",
-                     "only Modbus devices have a profile");
+                     "only Modbus devices and DMX lamps have a profile");
       }
       return;
     }
-    const auto name = reader.has("profile") ? reader.text("profile") : std::optional<std::string>("footlight-marker");
-    if (!name) return;
-    if (!reader.has("profile")) {
+    if (modbus && !reader.has("profile")) {
       bus.profile = footlight_marker_profile();
       return;
     }
+    const auto name = reader.has("profile") ? reader.text("profile") : std::optional<std::string>("dmx-rgb");
+    if (!name) return;
     const auto file = find_profile(*name, folder_);
     if (!file) {
-      const auto shipped = shipped_profiles();
       reader.error("profile", "there is no device profile " + in_quotes(*name),
-                   suggestion(*name, shipped, "shipped profiles") + "; or a .yaml file beside the rig");
+                   suggestion(*name, shipped_profiles(), "shipped profiles") + "; or a .yaml file beside the rig");
       return;
     }
-    bus.profile = read_profile(*file, reader.reading().diagnostics);
+    Diagnostics& diagnostics = reader.reading().diagnostics;
+    if (modbus) {
+      bus.profile = read_profile(*file, diagnostics);
+    } else {
+      bus.fixture = read_fixture(*file, diagnostics);
+    }
     if (std::find(files_.begin(), files_.end(), file->string()) == files_.end()) files_.push_back(file->string());
   }
 
@@ -176,6 +180,7 @@ class RigReader {
     }
     check_unique(reader, node, on);
     check_profile(reader, node, on);
+    check_slots(reader, node, on);
     rig_.nodes.push_back(std::move(node));
   }
 
@@ -223,6 +228,24 @@ class RigReader {
     if (channels > kChannelsPerNode) {
       reader.error("channels", "the node has " + std::to_string(channels) + " channels",
                    "at most " + std::to_string(kChannelsPerNode) + "; give the others to another node");
+    }
+  }
+
+  void check_slots(MappingReader& reader, const Node& node, const Bus& bus) {
+    if (!bus.fixture) return;
+    const auto footprint = static_cast<int>(bus.fixture->slots.size());
+    const int end = node.address + static_cast<int>(node.channels.size()) * footprint - 1;
+    if (end > last_address(bus.kind)) {
+      return reader.error("address", "the lamps of this node end at slot " + std::to_string(end),
+                          "at most 512; a lamp of the profile " + in_quotes(bus.fixture->name) + " has " +
+                              std::to_string(footprint) + " slots");
+    }
+    for (int slot = node.address; slot <= end; ++slot) {
+      const auto [other, is_new] = slots_.emplace(std::pair(node.bus, slot), reader.position().line);
+      if (is_new) continue;
+      return reader.error("address", "slot " + std::to_string(slot) + " is used by other lamps as well",
+                          "the node in line " + std::to_string(other->second) + "; a lamp of the profile " +
+                              in_quotes(bus.fixture->name) + " has " + std::to_string(footprint) + " slots");
     }
   }
 
@@ -326,6 +349,10 @@ class RigReader {
     if (wrong || !channels || !with_wearables || (floor.has("nodes_per_bus") && !per_bus)) return;
     for (const BusIndex b : buses) {
       const Bus& bus = rig_.buses[b.at()];
+      if (bus.kind == BusKind::dmx) {
+        return floor.error("buses", "the lamps of the DMX bus " + in_quotes(bus.name) + " have addresses set by hand",
+                           "list them under nodes");
+      }
       if (!bus.profile || *channels <= bus.profile->channels) continue;
       return floor.error("channels_per_node",
                          "the devices of the bus " + in_quotes(bus.name) + " have fewer than " +
@@ -396,6 +423,7 @@ class RigReader {
   Rig rig_;
   std::map<std::string, PerformerIndex> wearables_;
   std::map<std::pair<BusIndex, int>, int> nodes_at_;
+  std::map<std::pair<BusIndex, int>, int> slots_;  ///< DMX: line of the node that uses one
   std::map<std::string, int> node_names_;
   std::map<CellIndex, int> lamp_line_;
   std::map<PerformerIndex, int> worn_line_;

@@ -282,6 +282,14 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   const std::vector<CuePlay> plays = cue_plays(show, plan);
   Result<CueSchedule> schedule = Compiler(show, plan, rig, plays).compile();
   if (!schedule) return schedule;
+  for (std::size_t b = 0; b < drivers.size(); ++b) {
+    const int most = drivers[b]->capabilities().looks;
+    const auto wanted = static_cast<int>(schedule->looks().size()) - 1;
+    if (wanted <= most) continue;
+    return refusal("bus \"" + rig.buses[b].name + "\": its devices know " + std::to_string(most) +
+                   " looks besides dark, and the show has " + std::to_string(wanted) +
+                   " (fewer groups' colours, or looks with colours of their own)");
+  }
   std::vector<Duration> gaps;
   for (const CuePlay& play : plays) gaps.push_back(play.gap_after.value_or(kShortestHold));
   const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);

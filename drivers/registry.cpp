@@ -7,6 +7,7 @@
 
 #include "core/check.hpp"
 #include "drivers/devices/canopen/canopen_driver.hpp"
+#include "drivers/devices/dmx_usb_pro/dmx_driver.hpp"
 #include "drivers/devices/footlight_serial/serial_driver.hpp"
 #include "drivers/devices/modbus/modbus_driver.hpp"
 #include "drivers/transports/can_interface.hpp"
@@ -43,6 +44,15 @@ DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, std::uint8_t plan_
   return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), profile, nodes, plan_byte);
 }
 
+/// Lamps of red, green and blue, where the rig names no fixture.
+DmxFixture fixture_of(const Bus& bus) {
+  return bus.fixture.value_or(DmxFixture{"dmx-rgb", {DmxSlot::red, DmxSlot::green, DmxSlot::blue}});
+}
+
+DriverPointer make_dmx(const Bus& bus, const Nodes& nodes, std::uint8_t /*plan_byte*/, PortReference port) {
+  return std::make_unique<DmxDriver>(port_of_kind<ByteStream>(port), fixture_of(bus), nodes);
+}
+
 struct Language {
   BusKind kind;
   int last_address;
@@ -51,11 +61,31 @@ struct Language {
 
 // A new language is a line here, a folder in devices/ and its sources in CMakeLists.txt.
 constexpr std::array kLanguages{
-    Language{BusKind::serial, 254, make_serial},
-    Language{BusKind::modbus_rtu, 247, make_modbus},
-    Language{BusKind::modbus_tcp, 247, make_modbus},
-    Language{BusKind::can, canopen::kLastNode, make_canopen},
+    Language{BusKind::serial, 254, make_serial},     Language{BusKind::modbus_rtu, 247, make_modbus},
+    Language{BusKind::modbus_tcp, 247, make_modbus}, Language{BusKind::can, canopen::kLastNode, make_canopen},
+    Language{BusKind::dmx, dmx::kSlots, make_dmx},
 };
+
+/// Lamps of different nodes must not share slots.
+Status<> check_slots(const Bus& bus, const Nodes& nodes) {
+  const auto footprint = static_cast<int>(fixture_of(bus).slots.size());
+  std::set<int> taken;
+  for (const NodeAddress& node : nodes) {
+    const int end = node.address + node.channels * footprint;
+    const std::string what = "bus \"" + bus.name + "\": the lamps of node address " + std::to_string(node.address);
+    if (end - 1 > dmx::kSlots) {
+      return input_error(what + " end at slot " + std::to_string(end - 1) + " (at most " + std::to_string(dmx::kSlots) +
+                         ")");
+    }
+    for (int slot = node.address; slot < end; ++slot) {
+      if (!taken.insert(slot).second) {
+        return input_error(what + " use slot " + std::to_string(slot) + ", which other lamps use as well (" +
+                           std::to_string(footprint) + " slots a lamp)");
+      }
+    }
+  }
+  return Done{};
+}
 
 Status<> check_nodes(const Bus& bus, const Nodes& nodes, int last_address) {
   std::set<int> seen;
@@ -121,6 +151,7 @@ constexpr std::array kTransports{
     Transport{"rtu", BusKind::modbus_rtu, "rtu:///dev/serial/by-id/...", open_rtu_bus},
     Transport{"tcp", BusKind::modbus_tcp, "tcp://host:502", open_tcp_bus},
     Transport{"can", BusKind::can, "can://can0", open_can_bus, preflight_can_bus},
+    Transport{"dmx", BusKind::dmx, "dmx:///dev/serial/by-id/...", open_serial_bus},
 };
 
 std::string example_for(BusKind kind) {
@@ -147,6 +178,10 @@ std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus) {
   return addresses;
 }
 
+bool levels_show(const Bus& bus, const Look& look, std::span<const std::uint8_t> levels) {
+  return dmx::may_show(fixture_of(bus), look, levels);
+}
+
 LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look) {
   return bus.profile ? modbus::value_of(*bus.profile, index, look) : index;
 }
@@ -157,6 +192,9 @@ Result<DriverPointer> make_driver(const Bus& bus, const std::vector<NodeAddress>
     if (language.kind != bus.kind) continue;
     const auto checked = check_nodes(bus, nodes, language.last_address);
     if (!checked) return checked.error();
+    if (bus.kind == BusKind::dmx) {
+      if (const auto slots = check_slots(bus, nodes); !slots) return slots.error();
+    }
     return language.make(bus, nodes, plan_byte, port);
   }
   return internal_error("bus \"" + bus.name + "\": no language for " + std::string(to_text(bus.kind)));

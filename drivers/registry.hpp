@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,14 +28,18 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
 /// What a device of this bus holds in a channel that shows `look`: the index, or the device's own number.
 [[nodiscard]] LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look);
 
+/// Whether the slots of a DMX lamp of this bus have levels that `look` may have, at whatever moment of its effect.
+[[nodiscard]] bool levels_show(const Bus& bus, const Look& look, std::span<const std::uint8_t> levels);
+
 /// The driver of the bus's kind (table in registry.cpp). A Modbus bus without a profile gets that of our own marker.
-/// @param port of the kind that the bus needs: ByteStream for serial, CanPort for CAN, ModbusPort for both Modbus kinds
+/// @param port of the kind that the bus needs: ByteStream for serial and DMX, CanPort for CAN, ModbusPort for both
+/// Modbus kinds
 ///             (another kind is a programmer error)
 /// Errors: ErrorKind::input for addresses or channels that the bus cannot have.
 [[nodiscard]] Result<std::unique_ptr<Driver>> make_driver(const Bus& bus, const std::vector<NodeAddress>& nodes,
                                                           std::uint8_t plan_byte, PortReference port);
 
-/// Opens the real wire that the bus's URL names: serial://, rtu://, tcp://, can:// (table in registry.cpp).
+/// Opens the real wire that the bus's URL names: serial://, rtu://, tcp://, can://, dmx:// (table in registry.cpp).
 /// @param nodes of the bus: over TCP a broadcast goes to each of them
 /// Errors: ErrorKind::input for a URL that no transport takes, ErrorKind::device for what the machine refuses.
 [[nodiscard]] Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes);

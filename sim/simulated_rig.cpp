@@ -9,6 +9,7 @@
 #include "core/check.hpp"
 #include "core/rng.hpp"
 #include "sim/can_bus.hpp"
+#include "sim/dmx_bus.hpp"
 #include "sim/rtu_bus.hpp"
 #include "sim/serial_bus.hpp"
 #include "sim/simulated_bus.hpp"
@@ -42,13 +43,14 @@ std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surro
     case BusKind::can:
       return std::make_unique<CanBus>(bus, surroundings);
     case BusKind::dmx:
-      break;
+      return std::make_unique<DmxBus>(bus, surroundings);
   }
   FL_CHECK(false);
 }
 
 NodeModel model_of(const Node& node, const Bus& bus) {
   const auto channels = static_cast<int>(node.channels.size());
+  if (bus.kind == BusKind::dmx) return {channels, false, kDark};
   if (!bus.profile) return {channels, true};
   const bool ours = bus.profile->heartbeat_register || bus.profile->status_register;
   return {channels, bus.profile->heartbeat_register.has_value(), ours ? kNoGuidance : kDark};
@@ -207,7 +209,7 @@ void SimulatedRig::set_show(Instant start, Duration length) {
 SimulatedRig::~SimulatedRig() = default;
 
 drivers::ByteStream& SimulatedRig::serial(BusIndex bus) {
-  return dynamic_cast<drivers::ByteStream&>(state_->bus(bus, {BusKind::serial}));
+  return dynamic_cast<drivers::ByteStream&>(state_->bus(bus, {BusKind::serial, BusKind::dmx}));
 }
 
 drivers::CanPort& SimulatedRig::can(BusIndex bus) {
@@ -235,9 +237,20 @@ LookIndex SimulatedRig::shown(NodeIndex node, int channel) const {
 Look SimulatedRig::lamp(NodeIndex node, int channel) const {
   const auto [bus, slot] = state_->places.at(node.at());
   if (!bus->node(slot).powered()) return Look{{}, Effect::steady, 0};
+  if (const auto* dmx = dynamic_cast<const DmxBus*>(bus)) {
+    const Colour colour = dmx->colour(slot, channel);
+    return Look{colour, Effect::steady, static_cast<std::uint8_t>(colour == Colour{} ? 0 : 255)};
+  }
   const NodeModel& model = bus->node(slot).model();
   if (model.identifying(state_->world.now())) return Look{{255, 255, 255}, Effect::blink, 255};
   return model.look(model.shown(channel));
+}
+
+std::vector<std::uint8_t> SimulatedRig::levels(NodeIndex node, int channel) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  const auto* dmx = dynamic_cast<const DmxBus*>(bus);
+  FL_CHECK(dmx != nullptr);
+  return dmx->levels(slot, channel);
 }
 
 void SimulatedRig::end_faults() { state_->end_faults(); }

@@ -68,6 +68,8 @@ class SimulatedRig {
   /// How it looks now: the entry of the node's own table; black without power; white and blinking when it identifies
   /// itself.
   [[nodiscard]] Look lamp(NodeIndex node, int channel) const;
+  /// Levels of a lamp's slots on a DMX bus.
+  [[nodiscard]] std::vector<std::uint8_t> levels(NodeIndex node, int channel) const;
   [[nodiscard]] bool powered(NodeIndex node) const;
   /// True while the node keeps what it shows because it has not heard the controller for a second.
   [[nodiscard]] bool holds(NodeIndex node) const;

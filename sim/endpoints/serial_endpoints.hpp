@@ -14,11 +14,12 @@
 
 namespace footlight::sim {
 
-/// A Footlight serial bus on a pseudo-terminal.
+/// A Footlight serial bus, or a DMX widget, on a pseudo-terminal.
 class SerialEndpoint final : public Endpoint {
  public:
-  SerialEndpoint(PseudoTerminal terminal, drivers::ByteStream& bus) : terminal_(std::move(terminal)), bus_(bus) {}
-  [[nodiscard]] std::string url() const override { return "serial://" + terminal_.link().string(); }
+  SerialEndpoint(PseudoTerminal terminal, drivers::ByteStream& bus, std::string scheme = "serial")
+      : terminal_(std::move(terminal)), bus_(bus), scheme_(std::move(scheme)) {}
+  [[nodiscard]] std::string url() const override { return scheme_ + "://" + terminal_.link().string(); }
   void add_handles(std::vector<pollfd>& files) const override;
   Instant step(Instant now) override;
   [[nodiscard]] bool used() const override { return used_; }
@@ -27,6 +28,7 @@ class SerialEndpoint final : public Endpoint {
   static constexpr std::size_t kPiece = 1024;  ///< less than the bus's buffer
   PseudoTerminal terminal_;
   drivers::ByteStream& bus_;
+  std::string scheme_;
   std::array<std::uint8_t, kPiece> waiting_{};  ///< read and not yet taken by the bus
   std::size_t waiting_size_ = 0;
   bool used_ = false;

@@ -20,11 +20,11 @@ std::string file_name(const std::string& bus) {
   return name.starts_with('.') ? "_" + name : name;
 }
 
-template <class Kind, class Bus>
-Result<std::unique_ptr<Endpoint>> on_terminal(const std::filesystem::path& link, Bus& bus) {
+template <class Kind, class Bus, class... More>
+Result<std::unique_ptr<Endpoint>> on_terminal(const std::filesystem::path& link, Bus& bus, More... more) {
   auto terminal = PseudoTerminal::open(link);
   if (!terminal) return std::move(terminal).error();
-  return std::unique_ptr<Endpoint>(std::make_unique<Kind>(std::move(terminal).value(), bus));
+  return std::unique_ptr<Endpoint>(std::make_unique<Kind>(std::move(terminal).value(), bus, more...));
 }
 
 template <class Kind>
@@ -76,6 +76,8 @@ Result<std::unique_ptr<Endpoint>> ServedRig::endpoint_for(const Rig& rig, BusInd
   switch (wire.kind) {
     case BusKind::serial:
       return on_terminal<SerialEndpoint>(link, simulated_->serial(bus));
+    case BusKind::dmx:
+      return on_terminal<SerialEndpoint>(link, simulated_->serial(bus), "dmx");
     case BusKind::modbus_rtu:
       return on_terminal<RtuEndpoint>(link, simulated_->modbus_line(bus));
     case BusKind::modbus_tcp: {
@@ -83,7 +85,6 @@ Result<std::unique_ptr<Endpoint>> ServedRig::endpoint_for(const Rig& rig, BusInd
       return as_endpoint(TcpEndpoint::open(port, simulated_->modbus_line(bus)));
     }
     case BusKind::can:
-    case BusKind::dmx:
       break;
   }
   return as_endpoint(CanEndpoint::open(serving.can.at(wire.name), simulated_->can(bus)));

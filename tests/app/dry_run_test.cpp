@@ -2,9 +2,12 @@
 #include "app/dry_run.hpp"
 
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "config/device_profile.hpp"
 #include "tests/support/small_show.hpp"
 
 namespace footlight::app {
@@ -80,6 +83,58 @@ TEST(DryRun, RegressionARestartedCanNodeIsStartedAgainWhenItsBootUpMessageIsLost
   small.rig = lamps_everywhere(small.show.stage.grid, kAllKinds, 115'200, 16);
   const DryRunReport report = report_of(small, "loss=5%,reboot=2", 32);
   EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+}
+
+Bus bus_with(const std::string& profile) {
+  Bus bus;
+  bus.name = profile;
+  bus.bits_per_second = 115'200;
+  const auto file = config::find_profile(profile, "/").value();
+  Diagnostics diagnostics;
+  if (profile.starts_with("dmx")) {
+    bus.kind = BusKind::dmx;
+    bus.url = "sim://dmx";
+    bus.fixture = config::read_fixture(file, diagnostics);
+  } else {
+    bus.kind = BusKind::modbus_rtu;
+    bus.url = "sim://rtu";
+    bus.profile = config::read_profile(file, diagnostics);
+  }
+  return bus;
+}
+
+/// A slow show of few people on nodes of so many lamps of one kind.
+SmallShow show_with(const std::string& profile, int channels, int slots) {
+  SmallShow small = random_show(8, 6, 20, 2, 3, 5);
+  small.rig = lamps_everywhere(small.show.stage.grid, {BusKind::modbus_rtu}, 115'200, channels);
+  small.rig.buses[0] = bus_with(profile);
+  int next = 1;
+  for (Node& node : small.rig.nodes) {
+    if (slots > 0) node.address = std::exchange(next, next + slots * static_cast<int>(node.channels.size()));
+  }
+  return small;
+}
+
+TEST(DryRun, LampsOfOtherPeoplesLanguagesAreRightAtTheEndOfEveryCue) {
+  for (const auto& [profile, channels, slots] :
+       std::vector<std::tuple<std::string, int, int>>{{"relay-16", 16, 0}, {"dmx-rgb", 24, 3}, {"dmx-dimmer", 24, 1}}) {
+    const SmallShow small = show_with(profile, channels, slots);
+    const DryRunReport quiet = report_of(small, "", 1);
+    EXPECT_EQ(quiet.wrong_final, 0U) << profile << "\n" << trouble(quiet);
+    EXPECT_EQ(quiet.late, 0U) << profile << "\n" << trouble(quiet);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const DryRunReport report = report_of(small, "loss=5%", seed);
+      EXPECT_EQ(report.wrong_final, 0U) << profile << " seed " << seed << "\n" << trouble(report);
+    }
+  }
+}
+
+TEST(DryRun, AShowOfMoreLooksThanADeviceKnowsIsRefused) {
+  const SmallShow small = show_with("pick-light", 1, 0);
+  const Result<DryRunReport> report = dry_run(small.show, small.plan, small.rig, {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().message.substr(0, 65),
+            "bus \"pick-light\": its devices know 5 looks besides dark, and the ");
 }
 
 SmallShow show_on(BusKind kind) {

@@ -33,9 +33,16 @@ class ProfileFile : public ::testing::Test {
 };
 
 TEST_F(ProfileFile, EveryShippedProfileIsRight) {
-  EXPECT_EQ(shipped_profiles(), (std::vector<std::string>{"footlight-marker", "pick-light", "relay-16"}));
+  EXPECT_EQ(shipped_profiles(),
+            (std::vector<std::string>{"dmx-dimmer", "dmx-rgb", "footlight-marker", "pick-light", "relay-16"}));
   for (const std::string& name : shipped_profiles()) {
     Diagnostics diagnostics;
+    if (name.starts_with("dmx")) {
+      const auto fixture = read_fixture(find_profile(name, "/").value(), diagnostics);
+      ASSERT_TRUE(fixture) << diagnostics.to_text();
+      EXPECT_EQ(fixture->name, name);
+      continue;
+    }
     const auto profile = read_profile(find_profile(name, "/").value(), diagnostics);
     ASSERT_TRUE(profile) << diagnostics.to_text();
     EXPECT_EQ(profile->name, name) << "the name is the file's";
@@ -77,16 +84,34 @@ TEST_F(ProfileFile, ReadsStatesPaletteHealthAndQuirks) {
 }
 
 TEST_F(ProfileFile, RefusesUnknownKeysAndValuesWithAGuess) {
-  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_regster: 7\nquirks: [no-broadcst]\n"),
-            "lamp.yaml:1:1: error: one of the keys look_register, look_coil is missing (give exactly one of them)\n"
-            "lamp.yaml:3:1: error: look_regster: unknown key (did you mean \"look_register\"?)\n"
-            "lamp.yaml:4:10: error: quirks[0]: \"no-broadcst\" is not a quirk that we know (did you mean "
-            "\"no-broadcast\"?)\n");
+  EXPECT_EQ(
+      messages("profile: 1\nname: lamp\nlook_regster: 7\nquirks: [no-broadcst]\n"),
+      "lamp.yaml:1:1: error: one of the keys look_register, look_coil, lamp_slots is missing (give exactly one of "
+      "them)\n"
+      "lamp.yaml:3:1: error: look_regster: unknown key (did you mean \"look_register\"?)\n"
+      "lamp.yaml:4:10: error: quirks[0]: \"no-broadcst\" is not a quirk that we know (did you mean "
+      "\"no-broadcast\"?)\n");
   EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 70000\n"),
             "lamp.yaml:3:16: error: look_register: \"70000\" is out of range (0 to 65535)\n");
   EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\nlook_coil: 0\n"),
             "lamp.yaml:4:1: error: look_coil: does not go with \"look_register\" (give exactly one of look_register, "
-            "look_coil)\n");
+            "look_coil, lamp_slots)\n");
+}
+
+TEST_F(ProfileFile, OfADmxLampHasItsSlotsAndNothingElse) {
+  folder_.write("lamp.yaml", "profile: 1\nname: par\nlamp_slots: [dimmer, red, green, blue, white, zero]\n");
+  Diagnostics diagnostics;
+  const auto fixture = read_fixture(folder_.path("lamp.yaml"), diagnostics);
+  ASSERT_TRUE(fixture) << diagnostics.to_text();
+  EXPECT_EQ(*fixture,
+            (DmxFixture{
+                "par", {DmxSlot::dimmer, DmxSlot::red, DmxSlot::green, DmxSlot::blue, DmxSlot::white, DmxSlot::zero}}));
+  folder_.write("lamp.yaml", "profile: 1\nname: par\nlamp_slots: [dimer, red]\nreadback: true\n");
+  EXPECT_EQ(read_fixture(folder_.path("lamp.yaml"), diagnostics), std::nullopt);
+  const std::string file = folder_.path("lamp.yaml").string();
+  EXPECT_EQ(diagnostics.to_text(),
+            file + ":3:14: error: lamp_slots[0]: \"dimer\" is no kind of slot (did you mean \"dimmer\"?)\n" + file +
+                ":4:1: error: readback: the key has no meaning here (a DMX lamp has a name and lamp_slots)\n");
 }
 
 TEST_F(ProfileFile, RefusesAPaletteThatCannotBeDarkOrRepeatsANumber) {

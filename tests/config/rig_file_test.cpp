@@ -166,7 +166,7 @@ TEST_F(RigFile, RefusesWrongNodes) {
             "rig.yaml:11:58: error: nodes[4].channels[2].wearable: nobody wears \"W3\" (did you mean \"W1\"?)\n"
             "rig.yaml:11:90: error: nodes[4].channels[4].wearable: the wearable \"W1\" is given a second channel (the "
             "first stands in line 11)\n"
-            "rig.yaml:12:25: error: nodes[5].address: \"0\" is out of range (1 to 254)\n"
+            "rig.yaml:12:25: error: nodes[5].address: \"0\" is out of range (1 to 512)\n"
             "rig.yaml:12:38: error: nodes[5].channels: the list is empty (at least one is needed)\n");
 }
 
@@ -186,12 +186,12 @@ TEST_F(RigFile, RefusesWrongBuses) {
       "rig.yaml:4:50: error: buses[1].bits_per_second: \"2000000\" is out of range (can: 10000 to 1000000 "
       "bit/s)\n"
       "rig.yaml:5:20: error: buses[2].url: \"http://x\" is not the URL of a bus (serial:///dev/..., rtu:///dev/..., "
-      "tcp://host:502, can://can0, sim://serial, sim://rtu, sim://tcp, sim://can)\n"
+      "tcp://host:502, can://can0, dmx:///dev/..., sim://serial, sim://rtu, sim://tcp, sim://can, sim://dmx)\n"
       "rig.yaml:6:31: error: buses[3].url: \"can://\" is not the URL of a bus (can://can0 or sim://can)\n"
       "rig.yaml:7:42: error: buses[4].profile: there is no device profile \"nosuch\" (shipped profiles: "
-      "footlight-marker, pick-light, relay-16; or a .yaml file beside the rig)\n"
-      "rig.yaml:8:33: error: buses[5].profile: the key has no meaning here (only Modbus devices have a "
-      "profile)\n");
+      "dmx-dimmer, dmx-rgb, footlight-marker, pick-light, relay-16; or a .yaml file beside the rig)\n"
+      "rig.yaml:8:33: error: buses[5].profile: the key has no meaning here (only Modbus devices and DMX "
+      "lamps have a profile)\n");
 }
 
 TEST_F(RigFile, ALineHasItsCharactersAndADirection) {
@@ -271,6 +271,23 @@ TEST_F(RigFile, RefusesMoreLampsThanADeviceHas) {
             "has at most 16; give the others to another node)\n"
             "rig.yaml:6:38: error: floor.channels_per_node: the devices of the bus \"r\" have fewer than 20 channels "
             "(at most 16, as the profile \"relay-16\" says)\n");
+}
+
+TEST_F(RigFile, RefusesDmxLampsThatShareSlotsOrHaveNone) {
+  EXPECT_EQ(
+      messages("rig: 1\n"
+               "buses: [{name: d, url: \"sim://dmx\"}, {name: e, url: \"sim://dmx\", profile: dmx-dimmer}]\n"
+               "nodes:\n"
+               "  - {bus: d, address: 1, channels: [A1:B1]}\n"
+               "  - {bus: d, address: 6, channels: [C1]}\n"
+               "  - {bus: d, address: 511, channels: [D1]}\n"
+               "floor: {buses: d}\n"),
+      "rig.yaml:5:23: error: nodes[1].address: slot 6 is used by other lamps as well (the node in line 4; a lamp "
+      "of the profile \"dmx-rgb\" has 3 slots)\n"
+      "rig.yaml:6:23: error: nodes[2].address: the lamps of this node end at slot 513 (at most 512; a lamp of the "
+      "profile \"dmx-rgb\" has 3 slots)\n"
+      "rig.yaml:7:16: error: floor.buses: the lamps of the DMX bus \"d\" have addresses set by hand (list them "
+      "under nodes)\n");
 }
 
 TEST(DeviceProfile, OfOurMarkerIsTheShippedOne) {

@@ -54,7 +54,10 @@ class Bench {
     Bus bus;
     bus.name = "front";
     bus.kind = kind;
-    auto made = make_driver(bus, {kSeven, kNine}, kPlanByte, port);
+    // Their lamps must not share slots.
+    nodes = kind == BusKind::dmx ? std::vector<NodeAddress>{{NodeIndex(3), 7, 32}, {NodeIndex(4), 109, 5}}
+                                 : std::vector<NodeAddress>{kSeven, kNine};
+    auto made = make_driver(bus, nodes, kPlanByte, port);
     ASSERT_TRUE(made) << made.error().message;
     driver = std::move(made).value();
   }
@@ -66,6 +69,7 @@ class Bench {
   }
 
   std::unique_ptr<Driver> driver;
+  std::vector<NodeAddress> nodes;
   EventLog log;
   Instant now = instant_at(10);
 };
@@ -166,6 +170,24 @@ class ModbusBench final : public Bench {
   RecordingModbus port_;
 };
 
+/// Nobody answers on DMX: what is asked is told nobody, and what is sent counts as taken.
+class DmxBench final : public Bench {
+ public:
+  DmxBench() { make(BusKind::dmx, &port_); }
+  void settle() override { now += milliseconds(12); }
+  void answer_preload(const NodeAddress& /*node*/, Sequence /*sequence*/) override {}
+  void answer_status(const NodeAddress& /*node*/, const Shown& /*shown*/) override {}
+  void stay_silent() override { now += milliseconds(100); }
+  void garbage(Rng& rng) override {
+    for (int i = 0; i < 300; ++i) port_.incoming.push_back(static_cast<std::uint8_t>(rng.below(256)));
+  }
+  void set_wire(SendStatus status) override { port_.status = status; }
+  [[nodiscard]] std::size_t sent() const override { return port_.sent.size(); }
+
+ private:
+  RecordingStream port_;
+};
+
 struct Language {
   std::string name;
   std::function<std::unique_ptr<Bench>()> make;
@@ -236,7 +258,60 @@ TEST_P(DriverContract, TellsOnceThatAPreloadIsTaken) {
   EXPECT_EQ(log().count(Kind::showing), 0U) << "a receipt is no proof";
 }
 
+/// Who cannot be read back takes a question and tells nothing: neither a look nor a miss.
+void expect_no_answer(Bench& bench) {
+  ASSERT_EQ(bench.driver->ask(kNine, bench.now), SendStatus::accepted);
+  for (int i = 0; i < 3; ++i) {
+    bench.stay_silent();
+    bench.step();
+  }
+  EXPECT_TRUE(bench.log.events.empty());
+  EXPECT_FALSE(bench.driver->assumption().empty()) << "what is taken for granted is said";
+}
+
+TEST_P(DriverContract, WhatIsNotProvedIsSaid) {
+  EXPECT_EQ(driver().capabilities().proves_looks, driver().assumption().empty());
+}
+
+TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
+  for (const Task task : {Task::probe, Task::identify, Task::set_address, Task::health}) {
+    const std::string_view refusal = driver().refusal(task);
+    if (!refusal.empty()) {
+      EXPECT_GT(refusal.size(), 20U) << refusal;
+      continue;
+    }
+    log().answers.clear();
+    const auto begin = [&] {
+      switch (task) {
+        case Task::probe:
+          return driver().probe(7, 0, bench_->now);
+        case Task::identify:
+          return driver().identify(7, true, bench_->now);
+        case Task::set_address:
+          return driver().set_address(7, 0x12345678, 11, bench_->now);
+        case Task::health:
+          return driver().ask_health(7, bench_->now);
+      }
+      return SendStatus::down;
+    };
+    ASSERT_EQ(begin(), SendStatus::accepted) << to_text(task);
+    for (int i = 0; i < 20 && (log().answers.empty() || !driver().ready()); ++i) {
+      bench_->step();
+      bench_->stay_silent();
+      bench_->step();
+      bench_->settle();
+      bench_->step();
+    }
+    ASSERT_FALSE(log().answers.empty()) << to_text(task) << " ends also when nobody answers";
+    EXPECT_EQ(log().answers.back().task, task);
+    EXPECT_EQ(log().answers.back().address, 7);
+    EXPECT_NE(log().answers.back().kind, ServiceAnswer::Kind::found) << "nobody has said anything";
+    EXPECT_TRUE(driver().ready()) << to_text(task);
+  }
+}
+
 TEST_P(DriverContract, TellsWhatANodeShows) {
+  if (!driver().capabilities().readback) return expect_no_answer(*bench_);
   ASSERT_EQ(driver().ask(kNine, bench_->now), SendStatus::accepted);
   bench_->answer_status(kNine, {200, 0x1234, 2, 0x0102});
   bench_->step();
@@ -250,6 +325,7 @@ TEST_P(DriverContract, TellsWhatANodeShows) {
 }
 
 TEST_P(DriverContract, ANodeThatDoesNotAnswerIsMissed) {
+  if (!driver().capabilities().readback) return expect_no_answer(*bench_);
   ASSERT_EQ(driver().ask(kNine, bench_->now), SendStatus::accepted);
   bench_->step();
   EXPECT_EQ(log().count(Kind::missed), 0U) << "not before its time";
@@ -265,6 +341,7 @@ TEST_P(DriverContract, ANodeThatDoesNotAnswerIsMissed) {
 }
 
 TEST_P(DriverContract, WantsToBeCalledWhenAnAnswerIsOverdue) {
+  if (!driver().capabilities().readback) return expect_no_answer(*bench_);
   ASSERT_EQ(driver().ask(kNine, bench_->now), SendStatus::accepted);
   const Instant next = bench_->step();
   EXPECT_GT(next, bench_->now);
@@ -283,6 +360,7 @@ TEST_P(DriverContract, GarbageIsHarmlessAndAnswersAfterItAreUnderstood) {
     bench_->step();
   }
   EXPECT_TRUE(log().events.empty()) << "nothing was asked";
+  if (!driver().capabilities().readback) return expect_no_answer(*bench_);
   ASSERT_EQ(driver().ask(kSeven, bench_->now), SendStatus::accepted);
   bench_->garbage(rng);
   bench_->step();
@@ -298,6 +376,7 @@ TEST_P(DriverContract, GarbageIsHarmlessAndAnswersAfterItAreUnderstood) {
 }
 
 TEST_P(DriverContract, ARestartIsToldBeforeWhatTheNodeShows) {
+  if (!driver().capabilities().readback) return expect_no_answer(*bench_);
   for (const std::uint16_t boots : std::array<std::uint16_t, 3>{5, 5, 6}) {
     bench_->settle();
     bench_->step();
@@ -336,6 +415,7 @@ TEST_P(DriverContract, TheWireIsToldDownOnceAndUpOnce) {
 
 TEST_P(DriverContract, BudgetsComeFromTheWireTime) {
   EXPECT_GT(driver().latch_time(), Duration{});
+  if (!driver().capabilities().readback) return;  // nothing goes out but the latch
   EXPECT_GT(driver().status_time(), Duration{});
   EXPECT_GT(driver().preload_time(1), Duration{});
   for (int channels = 1; channels < 32; ++channels) {
@@ -357,6 +437,7 @@ INSTANTIATE_TEST_SUITE_P(
     EveryLanguage, DriverContract,
     ::testing::Values(Language{"serial", [] { return std::make_unique<SerialBench>(); }},
                       Language{"canopen", [] { return std::make_unique<CanBench>(); }},
+                      Language{"dmx", [] { return std::make_unique<DmxBench>(); }},
                       Language{"modbus_rtu", [] { return std::make_unique<ModbusBench>(BusKind::modbus_rtu); }},
                       Language{"modbus_tcp", [] { return std::make_unique<ModbusBench>(BusKind::modbus_tcp); }}),
     [](const auto& language) { return language.param.name; });

@@ -140,3 +140,12 @@ write("modbus.txt", ["RTU frames, CRC included. Plan byte 0xA3; node 7 has 32 ch
     ("Read 0x0040-0x0045 of node 7", "ask", hexed(rtu(7, 0x03, 0x40, count=6))),
     ("Broadcast 0x0050-0x0053: look 5, #7CFC00, brightness 200, blink", "look", hexed(rtu(0, 0x10, 0x50, [5, 0x7CFC, 200, 1]))),
 ])
+
+DMX = [255, 0, 0, 0, 128, 0] + [0] * 18
+write("dmx.txt", ["Messages to a DMX USB Pro widget (ENTTEC, API Specification 1.44). Lamps of red, green, blue from slot 1 on."], [
+    ("Label 6: start code 0, 24 slots; lamp 0 is red, lamp 1 green at half brightness", "packet", hexed(bytes([0x7E, 6, 25, 0, 0] + DMX + [0xE7]))),
+    ("Label 10: serial number asked for", "ask-serial", hexed(bytes([0x7E, 10, 0, 0, 0xE7]))),
+    ("Answer: 12345678", "serial", hexed(bytes([0x7E, 10, 4, 0, 0x78, 0x56, 0x34, 0x12, 0xE7]))),
+    ("Label 3: parameters asked for, no user data", "ask-parameters", hexed(bytes([0x7E, 3, 2, 0, 0, 0, 0xE7]))),
+    ("Answer: firmware 1.4, break 9, mark 1, 40 packets a second", "parameters", hexed(bytes([0x7E, 3, 5, 0, 4, 1, 9, 1, 40, 0xE7]))),
+])
