@@ -19,7 +19,8 @@ constexpr Duration kRestartTime = milliseconds(100);
 constexpr Duration kShortestJam = milliseconds(50);
 constexpr Duration kLongestJam = milliseconds(500);
 constexpr Duration kUnplugged = milliseconds(1000);
-constexpr Duration kStallTime = milliseconds(70);
+constexpr Duration kShortestStall = milliseconds(70);
+constexpr std::int64_t kLongestTurnBits = 190 * 135;  // answers to a SYNC and heartbeats that go before the controller
 // Classes of error frames, as of linux/can/error.h.
 constexpr std::uint16_t kErrorBusOff = 0x40;
 constexpr std::uint16_t kErrorRestarted = 0x100;
@@ -294,7 +295,8 @@ bool CanBus::controller_may_speak() const {
 
 drivers::CanState CanBus::state() const {
   if (line_ != drivers::CanState::active) return line_;
-  const bool waits = !queue_.empty() && around_.world.now() >= progress_ + kStallTime;
+  const Duration stall = std::max(kShortestStall, bit_time(kLongestTurnBits, bus_.bits_per_second));
+  const bool waits = !queue_.empty() && around_.world.now() >= progress_ + stall;
   return waits ? drivers::CanState::stalled : drivers::CanState::active;
 }
 

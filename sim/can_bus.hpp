@@ -19,7 +19,7 @@ namespace footlight::sim {
 /// but its sender saw an error in the last bit of the end of frame and sends it again.
 ///
 /// Error counters are not modelled; bus-off comes as a fault: the queue is lost, nothing is heard, and after 100 ms the
-/// interface restarts, both told by error frames. A queue that does not move for 70 ms is stalled, as in the transport.
+/// interface restarts, both told by error frames. A queue that does not move is stalled as in the transport.
 class CanBus final : public SimulatedBus, public drivers::CanPort {
  public:
   /// The queue of a Linux CAN interface (txqueuelen).

@@ -10,8 +10,8 @@
 
 namespace footlight::drivers {
 
-/// Longest time in which waiting frames may get no turn before the wire counts as stalled: 70 ms, and below 250 kbit/s
-/// the time of 130 frames, for 126 nodes that answer a SYNC go before a heartbeat.
+/// Longest time in which waiting frames may get no turn before the wire counts as stalled: 70 ms, and below 360 kbit/s
+/// the time of 190 frames, for the answers of 126 nodes to a SYNC and their own heartbeats go before ours.
 [[nodiscard]] Duration can_stall_time(int bits_per_second);
 
 /// Frames that an interface has taken and not yet shown to have been on the wire, by the echo of each.

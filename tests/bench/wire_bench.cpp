@@ -9,8 +9,9 @@
 namespace footlight::bench {
 namespace {
 
-/// Least share of what the wire allows.
+/// Least share of what the wire allows; on CAN all frames count, the nodes' heartbeats among them.
 constexpr double kLimit = 0.9;
+constexpr double kCanLimit = 0.95;
 
 bool print_row(BusKind kind, int bits_per_second, int nodes) {
   const contracts::PreloadRun run = contracts::preload_all(kind, bits_per_second, nodes);
@@ -18,8 +19,8 @@ bool print_row(BusKind kind, int bits_per_second, int nodes) {
       "{\"job\": \"preload %s %d\", \"nodes\": %d, \"seconds\": %.4f, \"efficiency\": %.4f, "
       "\"of_line_rate\": %.4f, \"limit\": %.2f}\n",
       std::string(to_text(kind)).c_str(), bits_per_second, nodes, static_cast<double>(run.elapsed.count()) * 1e-9,
-      run.efficiency(), run.of_line_rate(), kLimit);
-  return run.receipts == nodes && run.efficiency() >= kLimit;
+      run.efficiency(), run.of_line_rate(), kind == BusKind::can ? kCanLimit : kLimit);
+  return run.receipts == nodes && run.efficiency() >= (kind == BusKind::can ? kCanLimit : kLimit);
 }
 
 }  // namespace
@@ -33,6 +34,10 @@ int main() {
   }
   for (const int speed : {115'200, 1'000'000}) {
     for (const int nodes : {28, 127}) good = footlight::bench::print_row(BusKind::serial, speed, nodes) && good;
+  }
+  // 127 is the controller's id. 96 nodes of 32 channels are 3,072 markers.
+  for (const int speed : {125'000, 250'000, 500'000, 1'000'000}) {
+    for (const int nodes : {28, 96, 126}) good = footlight::bench::print_row(BusKind::can, speed, nodes) && good;
   }
   return good ? 0 : 1;
 }

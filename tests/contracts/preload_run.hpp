@@ -23,7 +23,8 @@ struct PreloadRun {
 };
 
 /// Nodes have 32 channels, and every look changes.
-/// @param kind serial or modbus_rtu  @param nodes as many as the bus has addresses at most
+/// @param kind serial, modbus_rtu or can (where a receipt is the last frame of a node's preload)  @param nodes as many
+/// as the bus has addresses at most
 [[nodiscard]] PreloadRun preload_all(BusKind kind, int bits_per_second, int nodes);
 
 }  // namespace footlight::contracts

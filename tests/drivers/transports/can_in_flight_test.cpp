@@ -81,8 +81,9 @@ TEST(CanInFlight, WhatWaitedASecondAndWasOvertakenIsLost) {
 
 TEST(CanInFlight, TheStallTimeAllowsAllNodesToAnswerFirst) {
   EXPECT_EQ(can_stall_time(1'000'000), milliseconds(70));
-  EXPECT_EQ(can_stall_time(250'000), microseconds(70'200));
-  EXPECT_EQ(can_stall_time(125'000), microseconds(140'400));
+  EXPECT_EQ(can_stall_time(500'000), milliseconds(70));
+  EXPECT_EQ(can_stall_time(250'000), microseconds(102'600));
+  EXPECT_EQ(can_stall_time(125'000), microseconds(205'200));
 }
 
 }  // namespace
