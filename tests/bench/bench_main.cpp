@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // footlight_bench [--quick] [--write FOLDER] [Google Benchmark's options]
+#include <cstdio>
 #include <string_view>
 
 #include "tests/bench/job.hpp"
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
       effort.quick = true;
     } else if (word == "--write" && i + 1 < argc) {
       write_assignment_instances(argv[i + 1]);
+      write_cell_walks(argv[i + 1]);
       write_pictures(argv[i + 1]);
       return 0;
     } else {
@@ -21,6 +23,9 @@ int main(int argc, char** argv) {
     }
   }
   argc = kept;
+#ifndef FOOTLIGHT_HAS_LEMON
+  std::fprintf(stderr, "note: built without LEMON (liblemon-dev); its rows are left out\n");
+#endif
   register_assignment(effort);
   register_planning(effort);
   register_shows(effort);

@@ -30,6 +30,7 @@ void register_shows(const Effort& effort);
 
 /// The instances and the pictures as files for peers in other languages (tests/bench/peers.py).
 void write_assignment_instances(const std::string& folder);
+void write_cell_walks(const std::string& folder);
 void write_pictures(const std::string& folder);
 
 }  // namespace footlight::bench

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "core/check.hpp"
+#include "planner/assignment/assignment.hpp"
 #include "planner/formation/cell_shares.hpp"
 #include "planner/formation/formation.hpp"
 #include "planner/hierarchy/hierarchical_matching.hpp"
 #include "planner/measure.hpp"
+#include "planner/schedule/steps.hpp"
 #include "planner/validate.hpp"
 #include "tests/bench/instances.hpp"
 #include "tests/bench/job.hpp"
@@ -173,6 +177,56 @@ void measure_all(benchmark::State& state, const std::string& name) {
   if (measures.show.frames != kMarks || !theta || *theta > 0.2) state.SkipWithError("the flower is not drawn");
 }
 
+/// A disk opens into a ring over neighbouring cells, on a floor of four cells a person.
+struct CellWalk {
+  explicit CellWalk(int people) {
+    const Instance instance = make_instance(Scene::disk_to_ring, people);
+    const auto pairing = planner::assign(instance.sources, instance.targets, planner::WalkCost::squared,
+                                         std::numeric_limits<double>::infinity());
+    FL_CHECK(pairing.has_value());
+    Point low = instance.sources[0];
+    Point high = low;
+    for (const auto* points : {&instance.sources, &instance.targets}) {
+      for (const Point& point : *points) {
+        low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+        high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+      }
+    }
+    const int side = std::max(static_cast<int>(std::ceil(2 * std::sqrt(static_cast<double>(people)))),
+                              static_cast<int>(std::lround(std::max(high.x - low.x, high.y - low.y))) + 1);
+    stage.grid = *Grid::make(GridKind::square, side, side, 1.0);
+    const auto cell = [&](Point point) {
+      return stage.grid.index(
+          {static_cast<int>(std::lround(point.x - low.x)), static_cast<int>(std::lround(point.y - low.y))});
+    };
+    for (const Point& point : instance.sources) from.push_back(cell(point));
+    for (const std::uint32_t target : pairing->target_of) to.push_back(cell(instance.targets[target]));
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Cell a = stage.grid.cell(from[i]);
+      const Cell b = stage.grid.cell(to[i]);
+      longest = std::max(longest, std::abs(a.column - b.column) + std::abs(a.row - b.row));
+    }
+  }
+
+  Stage stage;
+  std::vector<CellIndex> from;
+  std::vector<CellIndex> to;
+  int longest = 0;  ///< cells of the longest way
+};
+
+void schedule(benchmark::State& state, const std::string& name, int people) {
+  const CellWalk walk(people);
+  const planner::Ways ways(walk.stage, walk.stage.clearance_m / 2);
+  std::optional<planner::Steps> steps;
+  const auto work = [&] { steps = planner::step_through({&ways, walk.from, walk.to, 10 * walk.longest}); };
+  state.counters["mb"] = peak_memory_once_mb(name, work);
+  for (auto _ : state) work();
+  if (!steps || !steps->arrived) return state.SkipWithError("not everybody has arrived");
+  // What the prototype comes to, too: as many steps as the longest way has cells.
+  if (steps->count() > walk.longest + 2) state.SkipWithError("it takes more steps than the longest way");
+  state.counters["steps"] = steps->count();
+}
+
 template <class Work>
 benchmark::internal::Benchmark* add(const Effort& effort, const std::string& job, long size, Work work) {
   const std::string name = job_name("ours", job, size);
@@ -195,8 +249,28 @@ void register_planning(const Effort& effort) {
           [=](benchmark::State& state, const std::string& name) { unit(state, name, people, model); });
     }
   }
+  for (const int people : {1000, 3290, 10'000, 100'000}) {
+    if (effort.quick && people > 10'000) continue;
+    add(effort, "schedule over cells", people,
+        [=](benchmark::State& state, const std::string& name) { schedule(state, name, people); });
+  }
   add(effort, "validate 100 marks", 3290, judge)->MeasureProcessCPUTime();
   add(effort, "measure 100 marks", 3290, measure_all)->MeasureProcessCPUTime();
+}
+
+void write_cell_walks(const std::string& folder) {
+  for (const int people : {1000, 3290, 10'000, 100'000}) {
+    const CellWalk walk(people);
+    std::ofstream pairs(folder + "/cells_" + std::to_string(people) + ".txt");
+    std::ofstream matching(folder + "/cells_" + std::to_string(people) + ".match.txt");
+    pairs << people << "\n";
+    for (std::size_t i = 0; i < walk.from.size(); ++i) {
+      const Cell a = walk.stage.grid.cell(walk.from[i]);
+      const Cell b = walk.stage.grid.cell(walk.to[i]);
+      pairs << a.column << " " << a.row << " " << b.column << " " << b.row << "\n";
+      matching << i << "\n";
+    }
+  }
 }
 
 void write_pictures(const std::string& folder) {

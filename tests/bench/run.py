@@ -25,6 +25,7 @@ LIMITS = {
     ("assignment squared", 100_000): 0.6, ("assignment euclidean", 3290): 12e-3,
     ("formation 640x480", 3290): 20e-6, ("formation 1920x1080", 3290): 40e-6,
     ("unit flat", 100): 0.1e-3, ("unit flat", 1000): 2e-3, ("unit flat", 3290): 9e-3, ("unit flat", 5000): 15e-3,
+    ("schedule over cells", 3290): 0.8e-3, ("schedule over cells", 100_000): 0.12,
     ("show ceremony", 3290): 4.0, ("show stadium", 100_000): 30.0, ("replan ceremony, image", 3290): 0.1,
 }
 
@@ -85,21 +86,29 @@ def python_peer(*words):
     return Measured(statistics.median(answer["seconds"]), mb=answer["mb"], cost=answer["cost"])
 
 
-def compiled_prototype(folder):
-    """The shared assignment prototype; nothing where it is not there or its instructions are not."""
-    source = pathlib.Path(os.environ.get("FOOTLIGHT_SHARED", ROOT.parent / "shared")) / "prototypes/lap4.cpp"
+def compiled_prototype(folder, name, what):
+    """A shared prototype; nothing where it is not there or its instructions are not."""
+    source = pathlib.Path(os.environ.get("FOOTLIGHT_SHARED", ROOT.parent / "shared")) / f"prototypes/{name}.cpp"
     if not source.exists():
-        note("the shared prototype of the assignment is not here (FOOTLIGHT_SHARED); its rows are left out")
+        note(f"the shared prototype of the {what} is not here (FOOTLIGHT_SHARED); its rows are left out")
         return None
     if "avx512f" not in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"):
-        note("the shared prototype of the assignment needs AVX-512; its rows are left out")
+        note(f"the shared prototype of the {what} needs AVX-512; its rows are left out")
         return None
-    program = pathlib.Path(folder) / "lap4"
+    program = pathlib.Path(folder) / name
     command = ["g++", "-std=c++20", "-O3", "-march=native", "-w", "-o", program, source, "-pthread"]
     if subprocess.run(command, capture_output=True).returncode != 0:
-        note("the shared prototype of the assignment does not compile; its rows are left out")
+        note(f"the shared prototype of the {what} does not compile; its rows are left out")
         return None
     return program
+
+
+def schedule_run(program, folder, size):
+    """Steps over cells by the prototype, which checks its own conflicts."""
+    pairs, matching = (pathlib.Path(folder) / f"cells_{size}{ending}.txt" for ending in ("", ".match"))
+    output = subprocess.run([program, pairs, matching, "4", "7", "2.0"], capture_output=True, text=True)
+    found = re.search(r" ok 1 .* plan_ms min \S+ med (\S+) .*rss (\d+)", output.stdout)
+    return Measured(float(found[1]) / 1e3, mb=float(found[2])) if found else None
 
 
 def prototype_run(program, file, cost, size):
@@ -117,7 +126,11 @@ def prototype_run(program, file, cost, size):
 def peer_runs(quick, folder):
     """Peers in other programs, by (who, job, size)."""
     runs = {}
-    prototype = compiled_prototype(folder)
+    prototype = compiled_prototype(folder, "lap4", "assignment")
+    schedule = compiled_prototype(folder, "sched", "schedule over cells")
+    for size in (1000, 3290, 10_000) + (() if quick else (100_000,)):
+        if schedule:
+            runs["prototype (AVX-512)", "schedule over cells", size] = schedule_run(schedule, folder, size)
     for scene in SCENES[:1] if quick else SCENES:
         for cost in ("squared", "euclidean"):
             job = f"assignment {cost} {scene}"
