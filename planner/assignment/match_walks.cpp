@@ -17,6 +17,7 @@ namespace {
 constexpr std::uint32_t kDenseSize = 64;
 constexpr std::uint32_t kMostCandidates = 48;
 constexpr std::uint64_t kMostBids = 60;  ///< a source, in one phase of an auction
+constexpr Value kMostMargins = Value{1} << 14U;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// The tree over the targets of some walks, priced in integers.
@@ -166,7 +167,7 @@ Matching sample_match(const Walks& walks) {
 
 /// Targets outside of the reached ones, for everybody who was reached.
 std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets, const Matching& matching,
-                                      const Phases& phases) {
+                                      const Phases& phases, Value margin) {
   std::vector<std::uint32_t> sources(phases.reached_sources().begin(), phases.reached_sources().end());
   std::ranges::sort(sources);
   targets.fit(matching.price, phases.reached_targets());
@@ -177,7 +178,7 @@ std::vector<ArcRows::NewArc> arcs_out(const Walks& walks, PricedTargets& targets
       if (!walks.limited() || walks.allowed(i, hit.target)) arcs.push_back({i, hit.target, walks.cost(i, hit.target)});
     }
   };
-  for (const std::uint32_t i : sources) take(i, targets.best(i, 4 * walks.spacing()));
+  for (const std::uint32_t i : sources) take(i, targets.best(i, margin));
   // A search takes in a little more than the longest walk, which may hide what is allowed and dearer.
   if (arcs.empty() && walks.limited()) {
     for (const std::uint32_t i : sources) take(i, targets.within_reach(i));
@@ -204,11 +205,14 @@ std::vector<ArcRows::NewArc> arcs_that_undercut(const Walks& walks, PricedTarget
 std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows) {
   Phases phases(rows, matching, walks.on_lattice());
   phases.tighten();
+  // Each time it is looked twice as far, or a walk that is missing far away would take thousands of rounds.
+  Value margin = 4 * walks.spacing();
   while (true) {
     while (!phases.run()) {
-      const auto arcs = arcs_out(walks, targets, matching, phases);
+      const auto arcs = arcs_out(walks, targets, matching, phases, margin);
       if (arcs.empty()) return std::nullopt;
       phases.add(arcs);
+      margin = std::min(2 * margin, kMostMargins * walks.spacing());
     }
     const auto arcs = arcs_that_undercut(walks, targets, matching);
     if (arcs.empty()) return matching;
