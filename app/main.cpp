@@ -18,6 +18,8 @@
 #include "app/measure_command.hpp"
 #include "app/new_command.hpp"
 #include "app/plan_command.hpp"
+#include "app/preview_command.hpp"
+#include "app/report_command.hpp"
 #include "app/run_command.hpp"
 #include "app/session.hpp"
 #include "app/sheets_command.hpp"
@@ -29,9 +31,9 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,    add_check_command,  add_plan_command,   add_measure_command, add_why_command,
-    add_export_command, add_sheets_command, add_dryrun_command, add_dark_command,    add_devices_command,
-    add_sim_command,    add_run_command,    add_bundle_command,
+    add_new_command,    add_check_command,   add_plan_command,    add_measure_command, add_why_command,
+    add_export_command, add_sheets_command,  add_preview_command, add_report_command,  add_dryrun_command,
+    add_dark_command,   add_devices_command, add_sim_command,     add_run_command,     add_bundle_command,
 };
 
 constexpr const char* kFooter =

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string_view>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -133,6 +135,69 @@ void Canvas::arrow_head(Point from, Point tip, double size) const {
   cairo_fill(cairo());
 }
 
+namespace {
+
+double squared_distance(Point p, const Capsule& capsule) {
+  const Point way = capsule.to - capsule.from;
+  const double squared = squared_length(way);
+  const double share = squared > 0 ? std::clamp(dot(p - capsule.from, way) / squared, 0.0, 1.0) : 0.0;
+  return squared_length(p - (capsule.from + share * way));
+}
+
+/// Mixes a capsule into pixels of 4 bytes; its edge is as soft as a pixel is wide.
+void blend(const Capsule& capsule, unsigned char* pixels, int stride, int width, int height) {
+  const double reach = capsule.radius + 0.5;
+  const auto from = [&](double a, double b) {
+    return std::max(0, static_cast<int>(std::floor(std::min(a, b) - reach)));
+  };
+  const auto until = [&](double a, double b, int size) {
+    return std::min(size, static_cast<int>(std::ceil(std::max(a, b) + reach)));
+  };
+  const double inner = std::max(0.0, capsule.radius - 0.5);
+  const double colour[] = {255 * capsule.colour.blue, 255 * capsule.colour.green, 255 * capsule.colour.red};
+  const int right = until(capsule.from.x, capsule.to.x, width);
+  const int below = until(capsule.from.y, capsule.to.y, height);
+  for (int y = from(capsule.from.y, capsule.to.y); y < below; ++y) {
+    for (int x = from(capsule.from.x, capsule.to.x); x < right; ++x) {
+      const double squared = squared_distance({x + 0.5, y + 0.5}, capsule);
+      if (squared >= reach * reach) continue;
+      const double cover = squared <= inner * inner ? 1.0 : std::min(1.0, reach - std::sqrt(squared));
+      unsigned char* pixel = pixels + static_cast<std::ptrdiff_t>(y) * stride + 4 * static_cast<std::ptrdiff_t>(x);
+      const double share = cover * capsule.colour.alpha;
+      for (int c = 0; c < 3; ++c)
+        pixel[c] = static_cast<unsigned char>(pixel[c] + share * (colour[c] - pixel[c]) + 0.5);
+    }
+  }
+}
+
+}  // namespace
+
+void Canvas::capsules(std::span<const Capsule> list) {
+  if (medium_ == Medium::png) {
+    const std::span<unsigned char> to = pixels();
+    for (const Capsule& one : list) {
+      blend(one, to.data(), stride(), static_cast<int>(width_), static_cast<int>(height_));
+    }
+    cairo_surface_mark_dirty(surface_.get());
+    return;
+  }
+  cairo_save(cairo());
+  cairo_set_line_cap(cairo(), CAIRO_LINE_CAP_ROUND);
+  for (const Capsule& one : list) {
+    ink(one.colour);
+    stroke_line(one.from, one.to, 2 * one.radius);
+  }
+  cairo_restore(cairo());
+}
+
+void Canvas::copy(Canvas& other) {
+  const std::span<unsigned char> from = other.pixels();
+  const std::span<unsigned char> to = pixels();
+  FL_CHECK(from.size() == to.size());
+  std::ranges::copy(from, to.begin());
+  cairo_surface_mark_dirty(surface_.get());
+}
+
 void Canvas::set(const std::string& words, double size, bool bold, double width) const {
   PangoLayout* layout = layout_.get();
   if (font_ != std::pair(size, bold)) {
@@ -217,6 +282,27 @@ std::span<unsigned char> Canvas::pixels() {
 
 int Canvas::stride() const { return cairo_image_surface_get_stride(surface_.get()); }
 
+namespace {
+
+/// Cairo numbers the parts of an SVG through a whole run of a program; here they begin with 1 in every file.
+std::string numbered_anew(const std::string& svg) {
+  constexpr std::string_view kPart = "surface";
+  std::map<std::string, std::size_t> known;
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = svg.find(kPart); at != std::string::npos; at = svg.find(kPart, done)) {
+    const std::size_t begin = at + kPart.size();
+    const std::size_t end = std::min(svg.find_first_not_of("0123456789", begin), svg.size());
+    out.append(svg, done, begin - done);
+    if (end > begin)
+      out += std::to_string(known.emplace(svg.substr(begin, end - begin), known.size() + 1).first->second);
+    done = end;
+  }
+  return out.append(svg, done, std::string::npos);
+}
+
+}  // namespace
+
 std::string Canvas::finish() {
   if (medium_ == Medium::png) {
     FL_CHECK(cairo_surface_write_to_png_stream(surface_.get(), append, bytes_.get()) == CAIRO_STATUS_SUCCESS);
@@ -224,7 +310,7 @@ std::string Canvas::finish() {
     cairo_surface_finish(surface_.get());
     FL_CHECK(cairo_surface_status(surface_.get()) == CAIRO_STATUS_SUCCESS);
   }
-  return std::move(*bytes_);
+  return medium_ == Medium::svg ? numbered_anew(*bytes_) : std::move(*bytes_);
 }
 
 }  // namespace footlight::app

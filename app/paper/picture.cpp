@@ -13,6 +13,7 @@
 #include "app/numbers.hpp"
 #include "app/paper/canvas.hpp"
 #include "app/paper/drawn_floor.hpp"
+#include "app/paper/film_view.hpp"
 
 namespace footlight::app {
 namespace {
@@ -35,7 +36,8 @@ class Drawing {
         show_(show),
         index_(formation),
         formation_(plan.formations.at(formation.at())),
-        film_(film),
+        film_(plan, formation_.section, film),
+        first_frame_(film == nullptr ? 0 : film->first_frame),
         grid_(plan.stage.grid),
         frame_(grid_, {kLeftPx, kTopPx}, kFloorWidthPx, kFloorHeightPx),
         canvas_(Canvas::png(static_cast<int>(std::ceil(kLeftPx + std::max(frame_.width(), kNarrowestPx) + kRightPx)),
@@ -44,7 +46,7 @@ class Drawing {
   std::string draw() {
     const DrawnFloor floor(canvas_, frame_, plan_.stage, theme_);
     floor.ground(reserve());
-    if (mask() != nullptr) floor.film(*mask(), placement()->stage_to_frame);
+    if (mask() != nullptr) floor.film(*mask(), film_.placement());
     floor.lines();
     floor.blocked();
     walks();
@@ -65,18 +67,8 @@ class Drawing {
     return std::binary_search(reserve().begin(), reserve().end(), cell);
   }
 
-  /// How the section's film lies on the stage; null without a film.
-  [[nodiscard]] const FilmPlacement* placement() const {
-    const std::optional<FilmPlacement>& film = plan_.sections[formation_.section.at()].film;
-    return film ? &*film : nullptr;
-  }
-
-  /// What the film shows at this formation, or null. There is a placement then.
-  [[nodiscard]] const Mask* mask() const {
-    if (film_ == nullptr || film_->frames.empty() || placement() == nullptr) return nullptr;
-    const int k = formation_.frame ? *formation_.frame - film_->first_frame : 0;
-    return k >= 0 && k < static_cast<int>(film_->frames.size()) ? &film_->frames[static_cast<std::size_t>(k)] : nullptr;
-  }
+  /// What the film shows at this formation, or null.
+  [[nodiscard]] const Mask* mask() const { return film_.of_frame(formation_.frame.value_or(first_frame_)); }
 
   [[nodiscard]] Ink colour_of(std::size_t performer, double alpha) const {
     Colour colour = show_.default_colour;
@@ -132,26 +124,7 @@ class Drawing {
 
   [[nodiscard]] Standing standing(CellIndex cell) const {
     if (in_reserve(cell)) return Standing::waits;
-    return mask() == nullptr || on_picture(cell) ? Standing::in_picture : Standing::outside;
-  }
-
-  /// Whether the film shows something on some part of the cell.
-  [[nodiscard]] bool on_picture(CellIndex cell) const {
-    constexpr int kProbes = 5;  // a side
-    const Mask& picture = *mask();
-    const StageToFrame& m = placement()->stage_to_frame;
-    const Point centre = grid_.centre(cell);
-    for (int i = 0; i < kProbes * kProbes; ++i) {
-      const int across = i % kProbes - kProbes / 2;
-      const int up = i / kProbes - kProbes / 2;
-      const double x = centre.x + across * grid_.pitch_m() / kProbes;
-      const double y = centre.y + up * grid_.pitch_m() / kProbes;
-      const int column = static_cast<int>(std::floor(m[0] * x + m[1] * y + m[2]));
-      const int row = static_cast<int>(std::floor(m[3] * x + m[4] * y + m[5]));
-      if (column < 0 || row < 0 || column >= picture.width() || row >= picture.height()) continue;
-      if (picture.at(column, row)) return true;
-    }
-    return false;
+    return mask() == nullptr || film_.shows(*mask(), grid_.centre(cell)) ? Standing::in_picture : Standing::outside;
   }
 
   /// A dot; a ring for who is not where the film shows something; small and dim for who waits.
@@ -252,7 +225,8 @@ class Drawing {
   const Show& show_;
   FormationIndex index_;
   const Formation& formation_;
-  const Film* film_;
+  FilmView film_;
+  int first_frame_;  ///< of an image, which is all frames
   const Grid& grid_;
   const Theme& theme_ = kOnScreen;
   Frame frame_;

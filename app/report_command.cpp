@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/report_command.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/dark_report.hpp"
+#include "app/output_place.hpp"
+#include "app/paper/stamp.hpp"
+#include "app/plan_step.hpp"
+#include "app/report_page.hpp"
+#include "app/simulated_buses.hpp"
+#include "config/output_file.hpp"
+#include "controller/bus_budget.hpp"
+#include "controller/cue_list.hpp"
+#include "core/check.hpp"
+#include "core/clock.hpp"
+
+namespace footlight::app {
+namespace {
+
+struct Options {
+  PlanChoice choice;
+  std::string output;
+};
+
+constexpr double kStep_s = 1;
+
+/// What every bus has to carry at its hardest switch.
+Result<std::vector<BusLoad>> bus_loads(const Show& show, const Plan& plan, const Rig& rig) {
+  const Rig wires = with_simulated_buses(rig);
+  ManualClock clock;
+  sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
+  const auto drivers = drivers_on(simulated, wires, plan);
+  if (!drivers) return drivers.error();
+  const auto schedule = controller::build_schedule(show, plan, wires, *drivers);
+  if (!schedule) return schedule.error();
+  std::vector<Duration> gaps;
+  for (const auto& play : controller::cue_plays(show, plan)) {
+    gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
+  }
+  std::vector<BusLoad> out;
+  for (const Bus& bus : wires.buses) out.push_back({bus.name, 0, 0, 0, 0, ""});
+  for (const controller::BusNeed& need : controller::bus_needs(*schedule, wires, *drivers, gaps)) {
+    BusLoad& bus = out[need.bus.at()];
+    const double allowed_s = to_seconds(need.allowed());
+    const double load = allowed_s > 0 ? to_seconds(need.needed()) / allowed_s : 0;
+    if (need.changed == 0 || load <= bus.busiest) continue;
+    bus.busiest = load;
+    bus.needed_s = to_seconds(need.needed());
+    bus.allowed_s = allowed_s;
+    bus.changed = need.changed;
+    bus.cause = schedule->switches()[need.k].cause;
+  }
+  return out;
+}
+
+ReportFacts facts_of(Session& session, const PlannedShow& planned) {
+  const Plan& plan = planned.plan();
+  ReportFacts out;
+  out.measures = planner::measure(plan, *planned.films, session.progress());
+  out.lag_s = planner::measure_lag(plan, session.progress());
+  session.tell("drawing", 0);
+  out.drawing = drawing_series(plan, *planned.films);
+  out.clearance = clearance_series(plan, kStep_s);
+  session.tell("crowd", 0);
+  out.crowd = crowd_series(plan, kStep_s);
+  out.ways = way_figures(plan);
+  session.tell("buses", 0);
+  if (plan.valid) {
+    auto loads = bus_loads(planned.loaded.show, plan, planned.loaded.rig);
+    if (loads)
+      out.buses = std::move(loads).value();
+    else
+      out.buses_missing = loads.error().message;
+    session.tell("dark markers", 0);
+    out.dark = controller::find_dark_units(plan, planned.loaded.rig, kDarkKept);
+  } else {
+    out.buses_missing = "A refused plan is not lit.";
+  }
+  out.warnings = planned.loaded.warnings;
+  return out;
+}
+
+int run(Session& session, const Options& options) {
+  if (auto free = can_write(options.output); !free) return session.fail(free.error());
+  auto planned = plan_for(session, options.choice, true);
+  if (!planned) return session.fail(planned.error());
+  if (auto spared = spare_inputs(planned->loaded, options.output); !spared) return session.fail(spared.error());
+  FL_CHECK(planned->films.has_value());  // they were asked for
+  const ReportFacts facts = facts_of(session, *planned);
+  if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted; nothing was written"});
+  const Plan& plan = planned->plan();
+  const std::string page = report_html(plan, planned->loaded.show, *planned->films, facts);
+  if (auto done = config::write_file(options.output, page); !done) return session.fail(done.error());
+  session.clear_line();
+  session.print(fmt::format("{}: plan {}", options.output, Stamp(plan).plan));
+  // The report of a refused plan helps to see why; it says so itself.
+  const auto refused = refusal_of(planned->planned);
+  return refused ? session.fail(*refused) : 0;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& program, Session& session, Chosen& chosen) {
+  CLI::App* command = program.add_subcommand("report", "Tell everything about a show in one HTML page");
+  auto options = std::make_shared<Options>();
+  options->choice.add_options(*command);
+  command->add_option("-o,--output", options->output, "the HTML file; it needs no other file and no network")
+      ->required();
+  session.add_options(*command, false);
+  command->footer("Examples:\n  footlight report show.yaml -o report.html\n");
+  command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
+}
+
+}  // namespace footlight::app
