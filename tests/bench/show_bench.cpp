@@ -56,7 +56,7 @@ void decode_show(benchmark::State& state, const std::string& show) {
 }
 
 /// A hundred thousand people in a block of 400 x 300 cells with a flower cut out, which goes around and turns: twenty
-/// formations as images, 46 s of walking between them. People are matched all at once, so that nobody's way is
+/// formations as images, 96 s of walking between them. People are matched all at once, so that nobody's way is
 /// longer than it must be.
 DecodedShow stadium() {
   constexpr int kColumns = 400;
@@ -86,7 +86,7 @@ DecodedShow stadium() {
     Section section;
     section.name = "formation" + std::to_string(f + 1);
     section.from = ImageSource{section.name, {Fit::contain, {}, {}}};
-    section.start_count = 1 + 100.0 * f;
+    section.start_count = 1 + 200.0 * f;
     section.hold_counts = 8;
     section.planner.model = PlannerModel::flat;
     section.planner.cost = PairingCost::squared;
