@@ -109,6 +109,29 @@ TEST(OverCells, ASectionThatLeavesTooFewCountsIsRefusedByHowManyAreMissing) {
       "walk: straight)");
 }
 
+TEST(OverCells, NamedPeopleWhoStandInEachOthersWayStepAside) {
+  Show show = test::show_with(24, GridKind::square, 24, 12);
+  show.stage.walk = WalkKind::cells;
+  show.stage.max_speed_mps = 2;
+  const auto left = test::cells_in(show.stage.grid, "D4:F11");
+  const auto right = test::cells_in(show.stage.grid, "R4:T11");
+  std::vector<CellIndex> before(left.begin(), left.begin() + 12);
+  before.insert(before.end(), right.begin(), right.begin() + 12);
+  std::vector<CellIndex> after(right.begin(), right.begin() + 12);
+  after.insert(after.end(), left.begin(), left.begin() + 12);
+  show.sections = {test::section_of("before", CellsSource{"a.csv", before, true, {}}, 1, 0, 4, 11),
+                   test::section_of("after", CellsSource{"b.csv", after, true, {}}, 90, 0, 4, 12)};
+  const auto planned = plan_show(show, Films(2));
+  ASSERT_TRUE(planned) << planned.error().message;
+  EXPECT_EQ(planned->refusal, std::vector<std::string>());
+  EXPECT_TRUE(planned->plan.valid);
+  expect_steps(show, planned->plan);
+  for (std::size_t p = 0; p < after.size(); ++p) {
+    EXPECT_EQ(planned->plan.tracks[p].front().cell, before[p]);
+    EXPECT_EQ(planned->plan.tracks[p].back().cell, after[p]);
+  }
+}
+
 TEST(OverCells, WhereACountIsTooShortAStepTakesTwoAndTheNotesSaySo) {
   Show show = over_cells(GridKind::square, 30);
   show.stage.max_speed_mps = 1.4;
