@@ -49,6 +49,14 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
     uploads_[i] = std::uint8_t{kUploads};
     urgent_[i] = true;
   }
+  content_time_ = driver.content_time();
+  sync_time_time_ = driver.sync_time_time();
+  const auto& worn = schedule.contents().worn;
+  for (std::size_t w = 0; w < worn.size() && can_.contents; ++w) {
+    const std::size_t node = worn[w].node.at();
+    if (node >= by_node_.size() || by_node_[node] < 0) continue;
+    worn_.push_back({w, static_cast<std::size_t>(by_node_[node]), worn[w].channel});
+  }
 }
 
 Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
@@ -57,6 +65,7 @@ Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
   show_time_ = target.show_time;
   refused_ = false;
   follow(target);
+  follow_time();
   Instant driver_wish = driver_.step(now, *this);
   for (int i = 0; i < kMostOperations && now >= down_until_; ++i) {
     note_end();
@@ -90,6 +99,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
   consider(heartbeat_at_);
   consider(refresh_at_);
   consider(table_refresh_at_);
+  if (can_.keeps_time) consider(sync_at_);
   consider(down_until_);
   for (const NodeState& node : nodes_) {
     if (node.misses > 0 && !can_.pushes_status) consider(node.ask_at);
@@ -160,6 +170,10 @@ void BusLoop::switch_over(bool latched) noexcept {
   next_at_ = kNever;
   unlatched_ = false;
   repeats_ = latched && can_.sequenced_latch ? 1 : 0;
+  for (WornState& worn : worn_) {
+    if (latched && worn.pending == current_) worn.held = current_;
+    worn.pending = kNone;
+  }
   for (NodeState& node : nodes_) {
     const bool offered = node.offered == current_;
     const bool receipted = node.pending == current_;
@@ -224,6 +238,9 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
       on_refusal(*node, event.again);
       break;
     case Kind::content:
+      node->misses = 0;
+      on_content(event);
+      break;
     case Kind::bus_down:
     case Kind::bus_up:
       break;
@@ -234,6 +251,7 @@ void BusLoop::on_showing(NodeState& node, const drivers::DeviceEvent& event) noe
   node.misses = 0;
   node.quarantined = false;
   const bool fresh = event.sequence == sequence_of(current_);
+  node.shown = event.sequence;
   const bool guides = event.state == kStateShowing || event.state == kStateHold;
   if (guides && event.crc == node.crc && (node.right || fresh)) {
     node.verify = false;
@@ -326,6 +344,9 @@ void BusLoop::on_boot(NodeState& node) noexcept {
   node.in_flight = false;
   node.pending = kNone;
   node.offered = kNone;
+  for (WornState& worn : worn_) {
+    if (&nodes_[worn.position] == &node) worn.held = worn.pending = kNone;
+  }
   // It has lost its look table, too: first what it must show, the rest in idle time.
   for (std::size_t i = 1; i < schedule_.looks().size(); ++i) uploads_[i] = std::uint8_t{kUploads};
   need_looks(current_, node);

@@ -77,7 +77,15 @@ class BusLoop final : private drivers::EventSink {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  enum class Operation : std::uint8_t { none, latch, heartbeat, upload, ask, preload };
+  enum class Operation : std::uint8_t { none, latch, heartbeat, upload, ask, preload, content };
+  /// A wearable of this bus, and what its node is known to hold for it.
+  struct WornState {
+    std::size_t index = 0;     ///< in the schedule's contents
+    std::size_t position = 0;  ///< of its node
+    int channel = 0;
+    std::size_t held = kNone;     ///< switch whose content it has
+    std::size_t pending = kNone;  ///< switch whose content waits for its latch
+  };
 
   struct NodeState {
     drivers::NodeAddress address;
@@ -88,6 +96,7 @@ class BusLoop final : private drivers::EventSink {
     bool counted = false;   ///< its delivery of `current_` is counted
     bool quarantined = false;
     std::uint8_t misses = 0;      ///< in a row
+    drivers::Sequence shown = 0;  ///< of the latch that it has taken last, as it said; 0: not known
     std::uint8_t offers = 0;      ///< preloads of `offered` sent
     std::size_t offered = kNone;  ///< switch preloaded last
     bool in_flight = false;       ///< a preload is under way
@@ -149,6 +158,11 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::span<const LookIndex> looks(std::size_t k, const NodeState& node) const noexcept;
   void need_looks(std::size_t k, const NodeState& node) noexcept;
   void note_end() noexcept;
+  bool send_time() noexcept;
+  bool send_content() noexcept;
+  bool send_content(WornState& worn, std::size_t k) noexcept;
+  void on_content(const drivers::DeviceEvent& event) noexcept;
+  void follow_time() noexcept;
   bool latch_current() noexcept;
 
   const CueSchedule& schedule_;
@@ -191,7 +205,16 @@ class BusLoop final : private drivers::EventSink {
   Operation under_way_ = Operation::none;
   Instant since_;
   Instant line_free_;  ///< estimate, for wires with a queue
-  std::array<Duration, 6> longest_{};
+  std::array<Duration, 7> longest_{};
+
+  std::vector<WornState> worn_;
+  std::size_t sent_content_ = kNone;  ///< switch of the content under way
+  Duration content_time_{};
+  Duration sync_time_time_{};
+  bool goes_ = false;  ///< show time goes on
+  Instant followed_at_;
+  Duration followed_{};
+  Instant sync_at_;
 };
 
 }  // namespace footlight::controller

@@ -11,6 +11,7 @@ constexpr Duration kRefreshRound = milliseconds(800);  // every node is asked th
 constexpr Duration kSyncPoll = milliseconds(500);
 constexpr Duration kResendRound = milliseconds(2000);  // devices that cannot be read back
 constexpr Duration kTableRefresh = milliseconds(500);  // one look each
+constexpr Duration kTimeSync = milliseconds(1000);
 constexpr Duration kLateness = milliseconds(1);
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr Duration kAnswerWindow =
@@ -23,13 +24,14 @@ constexpr double kRepeats = 1.4;    // room for lost preloads: 1 / (1 - 30 %)
 bool BusLoop::act() noexcept {
   if (next_ != current_ && now_ >= latch_at()) return latch_next();
   if (repeat_latch() || send_heartbeat()) return true;
+  if (can_.keeps_time && started_ && send_time()) return true;
   if (!started_) {
     started_ = took(driver_.start(now_), Operation::heartbeat, latch_time_);
     return started_;
   }
   if (in_hurry() && preload_next()) return true;
   return upload(true) || verify() || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
-         ask_quarantined(false) || refresh() || upload(false);
+         ask_quarantined(false) || send_content() || refresh() || upload(false);
 }
 
 bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration time) noexcept {
@@ -223,6 +225,63 @@ bool BusLoop::send_ask(NodeState& node) noexcept {
   return true;
 }
 
+// ---- wearables
+
+void BusLoop::follow_time() noexcept {
+  if (now_ <= followed_at_) return;
+  const bool goes = show_time_ != followed_;
+  if (goes != goes_) sync_at_ = now_;
+  goes_ = goes;
+  followed_at_ = now_;
+  followed_ = show_time_;
+}
+
+bool BusLoop::send_time() noexcept {
+  if (worn_.empty() || now_ < sync_at_ || !fits(sync_time_time_)) return false;
+  if (!took(driver_.sync_time(show_time_, goes_ ? 1 : 0, now_), Operation::heartbeat, sync_time_time_)) return false;
+  sync_at_ = now_ + kTimeSync;
+  return true;
+}
+
+/// What a wearable should tell now, then what it should tell after the next switch.
+bool BusLoop::send_content() noexcept {
+  if (worn_.empty() || !fits(std::max(content_time_, time_of(Operation::content)))) return false;
+  const WearableContents& contents = schedule_.contents();
+  const auto same = [&](std::size_t w, std::size_t a, std::size_t b) {
+    return a != kNone && (a == b || contents.at(a, w) == contents.at(b, w));
+  };
+  for (WornState& worn : worn_) {
+    const NodeState& node = nodes_[worn.position];
+    if (node.quarantined || !node.right || node.shown == 0) continue;  // what it shows comes first
+    if (!same(worn.index, worn.held, current_)) return send_content(worn, current_);
+    worn.held = current_;
+  }
+  for (WornState& worn : worn_) {
+    const NodeState& node = nodes_[worn.position];
+    // A latch that a node does not need is not taken by it: then the content follows after the switch.
+    if (next_ == current_ || node.quarantined || !node.changes || worn.pending == next_) continue;
+    if (!same(worn.index, current_, next_)) return send_content(worn, next_);
+  }
+  return false;
+}
+
+bool BusLoop::send_content(WornState& worn, std::size_t k) noexcept {
+  const NodeState& node = nodes_[worn.position];
+  const drivers::SendStatus status =
+      driver_.send_content(node.address, worn.channel, k == current_ ? node.shown : sequence_of(k),
+                           schedule_.contents().at(k, worn.index), now_);
+  if (!took(status, Operation::content, content_time_)) return false;
+  sent_content_ = k;
+  return true;
+}
+
+void BusLoop::on_content(const drivers::DeviceEvent& event) noexcept {
+  for (WornState& worn : worn_) {
+    if (nodes_[worn.position].address.node != event.node || worn.channel != event.detail) continue;
+    (sent_content_ == current_ ? worn.held : worn.pending) = sent_content_;
+  }
+}
+
 // ---- idle time
 
 bool BusLoop::ask_quarantined(bool hopeful_only) noexcept {
@@ -278,6 +337,7 @@ Duration BusLoop::time_of(Operation operation) const noexcept {
   if (operation == Operation::preload) budget = preload_time_[kChannelsPerNode];
   if (operation == Operation::heartbeat) budget = heartbeat_time_;
   if (operation == Operation::upload) budget = upload_time_;
+  if (operation == Operation::content) budget = content_time_;
   return std::max(budget, longest_[static_cast<std::size_t>(operation)]);
 }
 

@@ -25,10 +25,6 @@ struct LampAt {
   CellIndex cell;
   std::size_t slot = 0;  ///< node x 32 + channel
 };
-struct WornBy {
-  PerformerIndex performer;
-  std::size_t slot = 0;
-};
 
 /// All possible looks by (colour, role, pattern). Numbers are given to those that are used.
 class LookBook {
@@ -82,10 +78,12 @@ class Compiler {
  public:
   Compiler(const Show& show, const Plan& plan, const Rig& rig, const std::vector<CuePlay>& plays)
       : show_file_(show.file),
+        tempo_(show.tempo),
         plan_(plan),
         crowd_(show, plan, plays),
         book_(show, plan.tracks.size()),
-        nodes_(rig.nodes.size()) {
+        nodes_(rig.nodes.size()),
+        worn_(worn_in(rig)) {
     lit_.resize(static_cast<std::size_t>(plan.stage.grid.size()));
     for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
       for (std::size_t c = 0; c < rig.nodes[n].channels.size(); ++c) {
@@ -94,8 +92,6 @@ class Compiler {
         if (channel.kind == Channel::Kind::cell) {
           lamps_.push_back({channel.cell, slot});
           lit_[channel.cell.at()] = true;
-        } else if (channel.kind == Channel::Kind::wearable) {
-          worn_.push_back({channel.performer, slot});
         }
       }
     }
@@ -168,6 +164,7 @@ class Compiler {
 
   Result<CueSchedule> write() {
     const std::size_t row = nodes_ * kChannelsPerNode;
+    contents_.worn = worn_;
     std::vector<std::uint16_t> entries(crowd_.moments().size() * row, kDarkEntry);
     std::vector<bool> used(book_.size(), false);
     LampConfusion confusion;
@@ -180,9 +177,11 @@ class Compiler {
       };
       for (const LampAt& lamp : lamps_) put(lamp.slot, lamp_[lamp.cell.at()]);
       const std::vector<bool>& reserve = crowd_.reserve_at(k);
-      for (const WornBy& worn : worn_) {
+      for (const WearableContents::Worn& worn : worn_) {
         const Doing& doing = doing_[worn.performer.at()];
-        put(worn.slot, wearable_of(worn.performer, doing, reserve[doing.cell.at()]));
+        put(worn.node.at() * kChannelsPerNode + static_cast<std::size_t>(worn.channel),
+            wearable_of(worn.performer, doing, reserve[doing.cell.at()]));
+        contents_.table.push_back(content_of(doing, plan_.tracks[worn.performer.at()], plan_.stage.grid, tempo_));
       }
       for_near_goals([&](const Lamp& a, const Lamp& b) {
         confusion.before += book_.look(book_.entry(a, 0)) == book_.look(book_.entry(b, 0)) ? 1 : 0;
@@ -196,7 +195,7 @@ class Compiler {
   }
 
   Result<CueSchedule> number(const std::vector<std::uint16_t>& entries, const std::vector<bool>& used,
-                             LampConfusion confusion) const {
+                             LampConfusion confusion) {
     std::vector<Look> looks;
     for (std::size_t e = 0; e < used.size(); ++e) {
       if (used[e]) looks.push_back(book_.look(static_cast<std::uint16_t>(e)));
@@ -217,16 +216,21 @@ class Compiler {
     std::vector<Switch> switches;
     for (const Moment& moment : crowd_.moments())
       switches.push_back({moment.time, moment.cause, moment.settled, moment.cue});
-    return CueSchedule(std::move(looks), std::move(switches), nodes_, std::move(table), plan_byte_of(plan_), confusion);
+    CueSchedule schedule(std::move(looks), std::move(switches), nodes_, std::move(table), plan_byte_of(plan_),
+                         confusion);
+    schedule.set_contents(std::move(contents_));
+    return schedule;
   }
 
   const std::string& show_file_;
+  const TempoMap& tempo_;
   const Plan& plan_;
   Crowd crowd_;
   LookBook book_;
   std::size_t nodes_;
+  std::vector<WearableContents::Worn> worn_;
+  WearableContents contents_;
   std::vector<LampAt> lamps_;
-  std::vector<WornBy> worn_;
   std::vector<bool> lit_;                     ///< cells that have a lamp
   std::vector<std::vector<CellIndex>> near_;  ///< of each cell: other lit cells within 1.5 pitches
   std::vector<std::uint8_t> pattern_;         ///< of each performer
@@ -248,6 +252,11 @@ CueSchedule::CueSchedule(std::vector<Look> looks, std::vector<Switch> switches, 
       confusion_(confusion) {
   FL_CHECK(!switches_.empty() && !looks_.empty() && looks_.size() <= kMostLooks);
   FL_CHECK(table_.size() == switches_.size() * nodes_ * kChannelsPerNode);
+}
+
+void CueSchedule::set_contents(WearableContents contents) {
+  FL_CHECK(contents.table.size() == contents.worn.size() * switches_.size());
+  contents_ = std::move(contents);
 }
 
 std::span<const LookIndex> CueSchedule::looks_of(std::size_t k, NodeIndex node) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/wearable_contents.hpp"
 #include "core/look.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
@@ -46,6 +47,10 @@ class CueSchedule {
   [[nodiscard]] std::span<const LookIndex> looks_of(std::size_t k, NodeIndex node) const;
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
+  /// What wearables tell besides their looks; empty unless it was set.
+  [[nodiscard]] const WearableContents& contents() const { return contents_; }
+  /// @param contents of as many switches
+  void set_contents(WearableContents contents);
 
  private:
   std::vector<Look> looks_;
@@ -54,6 +59,7 @@ class CueSchedule {
   std::vector<LookIndex> table_;  ///< switches x nodes x 32
   std::uint8_t plan_byte_ = 0;
   LampConfusion confusion_;
+  WearableContents contents_;
 };
 
 /// The byte of a plan that all frames of a show carry: the last two digits of its hash; a sum over its marks where it

@@ -246,6 +246,16 @@ Look SimulatedRig::lamp(NodeIndex node, int channel) const {
   return model.look(model.shown(channel));
 }
 
+const NodeContent& SimulatedRig::content(NodeIndex node, int channel) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  return bus->node(slot).model().content(channel);
+}
+
+std::optional<int> SimulatedRig::counts_left(NodeIndex node, int channel) const {
+  const auto [bus, slot] = state_->places.at(node.at());
+  return bus->node(slot).model().counts_left(channel, state_->world.now());
+}
+
 std::vector<std::uint8_t> SimulatedRig::levels(NodeIndex node, int channel) const {
   const auto [bus, slot] = state_->places.at(node.at());
   const auto* dmx = dynamic_cast<const DmxBus*>(bus);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/clock.hpp"
@@ -11,6 +12,7 @@
 #include "core/rig.hpp"
 #include "drivers/transport.hpp"
 #include "sim/faults.hpp"
+#include "sim/markers/node_model.hpp"
 #include "sim/modbus_line.hpp"
 
 namespace footlight::sim {
@@ -68,6 +70,9 @@ class SimulatedRig {
   /// How it looks now: the entry of the node's own table; black without power; white and blinking when it identifies
   /// itself.
   [[nodiscard]] Look lamp(NodeIndex node, int channel) const;
+  /// What a wearable tells besides its look (Footlight serial), and the counts that it still counts down.
+  [[nodiscard]] const NodeContent& content(NodeIndex node, int channel) const;
+  [[nodiscard]] std::optional<int> counts_left(NodeIndex node, int channel) const;
   /// Levels of a lamp's slots on a DMX bus.
   [[nodiscard]] std::vector<std::uint8_t> levels(NodeIndex node, int channel) const;
   [[nodiscard]] bool powered(NodeIndex node) const;
