@@ -160,6 +160,8 @@ Status<> DeviceBus::run(Session& session, controller::BusService& service, const
   }
   session.clear_line();
   if (service.failure()) {
+    const std::string trouble = simulated_ ? "" : drivers::trouble_of(drivers::reference(port_));
+    if (!trouble.empty()) return Error{service.failure()->kind, "bus \"" + bus().name + "\": " + trouble};
     return Error{service.failure()->kind, "bus \"" + bus().name + "\": " + service.failure()->message};
   }
   return Done{};

@@ -167,6 +167,10 @@ PortReference reference(const Port& port) {
   return std::visit([](const auto& owned) -> PortReference { return owned.get(); }, port);
 }
 
+std::string trouble_of(const PortReference& port) {
+  return std::visit([](const auto* open) { return open->trouble(); }, port);
+}
+
 std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus) {
   std::vector<NodeAddress> addresses;
   for (std::size_t i = 0; i < rig.nodes.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -21,6 +22,8 @@ using PortReference = std::variant<ByteStream*, CanPort*, ModbusPort*>;
 using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>, std::unique_ptr<ModbusPort>>;
 
 [[nodiscard]] PortReference reference(const Port& port);
+/// Why the port is down, in whole words for people; empty while it is not. Not while another thread uses it.
+[[nodiscard]] std::string trouble_of(const PortReference& port);
 
 /// The nodes of one bus as their driver wants them, in the order of the rig.
 [[nodiscard]] std::vector<NodeAddress> node_addresses(const Rig& rig, BusIndex bus);

@@ -42,7 +42,8 @@ Json bus_json(const LiveBusReport& bus) {
           {"wake_lateness", lateness_json(bus.wake)},
           {"cpu_share", bus.cpu_share},
           {"unconfirmed", bus.unconfirmed},
-          {"silent", bus.silent}};
+          {"silent", bus.silent},
+          {"trouble", bus.trouble}};
 }
 
 std::string lateness_row(const char* what, const LatenessReport& lateness) {
@@ -124,6 +125,7 @@ std::string live_failure(const LiveReport& report) {
     text += fmt::format("{}bus \"{}\" ({}): {} of {} nodes not confirmed right at the end", text.empty() ? "" : "\n",
                         bus.name, bus.url, bus.unconfirmed, bus.nodes);
     for (std::size_t i = 0; i < bus.silent.size(); ++i) text += (i == 0 ? "; silent: " : ", ") + bus.silent[i];
+    if (!bus.trouble.empty()) text += "; its wire is down: " + bus.trouble;
   }
   return text;
 }

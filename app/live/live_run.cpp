@@ -163,7 +163,8 @@ class LiveRun {
           const LiveOptions& options)
       : show_(show), rig_(rig), wires_(wires), options_(options), cue_(wires, target_, clock_) {
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-      auto handle = [port = drivers::reference(ports[b])] {
+      ports_.push_back(drivers::reference(ports[b]));
+      auto handle = [port = ports_.back()] {
         return std::visit([](const auto* open) { return open->poll_handle(); }, port);
       };
       threads_.push_back(std::make_unique<BusThread>(*wires.loops[b], std::move(handle), target_, clock_,
@@ -197,6 +198,7 @@ class LiveRun {
   const Show& show_;
   const Rig& rig_;
   ShowOnWires& wires_;
+  std::vector<drivers::PortReference> ports_;
   const LiveOptions& options_;
   SteadyClock clock_;
   SharedTarget target_;
@@ -294,6 +296,7 @@ LiveBusReport LiveRun::report_bus(std::size_t b, Duration run) const {
   bus.name = rig_.buses[b].name;
   bus.kind = std::string(to_text(rig_.buses[b].kind));
   bus.url = rig_.buses[b].url;
+  bus.trouble = drivers::trouble_of(ports_[b]);
   bus.nodes = static_cast<std::uint64_t>(std::ranges::count(rig_.nodes, BusIndex::of(b), &Node::bus));
   bus.deliveries = counters.deliveries;
   bus.unverified = counters.unverified;

@@ -43,6 +43,7 @@ struct LiveBusReport {
   double cpu_share = 0;             ///< processor time of the thread over the time of the run
   std::uint64_t unconfirmed = 0;    ///< nodes not confirmed right at the end
   std::vector<std::string> silent;  ///< of them, nodes in quarantine
+  std::string trouble;              ///< why its wire is down at the end; empty: it is not
 };
 
 struct LiveCueReport {

@@ -66,10 +66,10 @@ class LibmodbusPort final : public ModbusPort {
   SendStatus fail(int error, ModbusReply reply);
   void await_turn();
   void disconnect(int error);
-  [[nodiscard]] modbus_t* context() const { return connection_->context.get(); }
+  [[nodiscard]] modbus_t* context() const { return connection_.context.get(); }
 
   Line line_;
-  std::optional<Connection> connection_;
+  Connection connection_;  ///< without a context: down
   SteadyClock clock_;
   Instant line_free_{};  ///< serial: silence before the next frame ends then
   int unread_ = 0;       ///< TCP: answers to a broadcast that were not awaited
@@ -164,9 +164,9 @@ SendStatus LibmodbusPort::submit(const ModbusRequest& request) {
   FL_CHECK(request.unit != 0 ||
            (request.function != MODBUS_FC_READ_HOLDING_REGISTERS && request.function != MODBUS_FC_READ_COILS));
   if (busy()) return SendStatus::busy;
-  if (!connection_ && !connect()) return SendStatus::down;
+  if (context() == nullptr && !connect()) return SendStatus::down;
   await_turn();
-  turned_device = connection_->device.get();
+  turned_device = connection_.device.get();
   if (request.unit == 0) return broadcast(request);
   ModbusReply reply;
   reply.unit = request.unit;
@@ -256,16 +256,16 @@ void LibmodbusPort::await_turn() {
 
 /// Never what has been sent and is still on its way out, which modbus_flush throws away, too.
 bool LibmodbusPort::discard() {
-  if (!connection_) return false;
+  if (context() == nullptr) return false;
   if (line_.tcp) return unread_ == 0 && modbus_flush(context()) > 0;
   std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
   bool any = false;
-  while (connection_->device->read_some(bytes).value_or(0) > 0) any = true;
+  while (connection_.device->read_some(bytes).value_or(0) > 0) any = true;
   return any;
 }
 
 void LibmodbusPort::disconnect(int error) {
-  connection_.reset();
+  connection_ = {};
   trouble_ = line_.name + ": lost: " + modbus_strerror(error);
 }
 

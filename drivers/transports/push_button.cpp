@@ -27,8 +27,9 @@ Result<PushButton::Event> ButtonInput::step(Instant now) {
   while (true) {
     const auto edge = line_->take_edge();
     if (!edge) return edge.error();
-    if (!edge->has_value()) break;
-    if (const auto event = button_.take(**edge, now); event != PushButton::Event::none) return event;
+    const std::optional<bool>& down_after = edge.value();
+    if (!down_after) break;
+    if (const auto event = button_.take(*down_after, now); event != PushButton::Event::none) return event;
   }
   const auto down = line_->read();
   if (!down) return down.error();

@@ -8,9 +8,8 @@
 
 namespace footlight::drivers {
 
-SerialStream::SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen,
-                           const SerialSettings& settings)
-    : device_(std::move(device)), reopen_(std::move(reopen)), settings_(settings) {
+SerialStream::SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, SerialSettings settings)
+    : device_(std::move(device)), reopen_(std::move(reopen)), settings_(std::move(settings)) {
   FL_CHECK(settings_.bits_per_second > 0);
 }
 

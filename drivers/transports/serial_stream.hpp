@@ -20,7 +20,7 @@ using OpenSerialDevice = std::function<Result<std::unique_ptr<SerialDevice>>()>;
 /// until it has. A device that is gone is opened anew by each write, so that a cable may be put back.
 class SerialStream final : public ByteStream {
  public:
-  SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, const SerialSettings& settings);
+  SerialStream(std::unique_ptr<SerialDevice> device, OpenSerialDevice reopen, SerialSettings settings);
 
   SendStatus write(std::span<const std::uint8_t> bytes) override;
   std::size_t read(std::span<std::uint8_t> buffer) override;

@@ -256,6 +256,7 @@ TEST(ModbusRecovery, WhoTakesEveryReceiptForHisOwnIsDeceivedOnTheSameLine) {
   EXPECT_GT(deceived, 10);
 }
 
+#if FOOTLIGHT_WITH_libmodbus
 /// A device on a pseudo-terminal that keeps its answer until the next request has come, and does not hear that one.
 class LateServer {
  public:
@@ -318,6 +319,7 @@ TEST(ModbusRecovery, ALateServerOnARealLineDeceivesNobody) {
   EXPECT_EQ(log.count(DeviceEvent::Kind::preloaded), 0U) << "the receipt was that of 5";
   EXPECT_EQ(log.count(DeviceEvent::Kind::missed), 2U);
 }
+#endif
 
 }  // namespace
 }  // namespace footlight::contracts
