@@ -20,7 +20,8 @@ constexpr Duration kShortestJam = milliseconds(50);
 constexpr Duration kLongestJam = milliseconds(500);
 constexpr Duration kUnplugged = milliseconds(1000);
 constexpr Duration kShortestStall = milliseconds(70);
-constexpr std::int64_t kLongestTurnBits = 190 * 135;  // answers to a SYNC and heartbeats that go before the controller
+constexpr std::int64_t kLongestTurnBits =
+    std::int64_t{190} * 135;  // answers to a SYNC and heartbeats that go before the controller
 // Classes of error frames, as of linux/can/error.h.
 constexpr std::uint16_t kErrorBusOff = 0x40;
 constexpr std::uint16_t kErrorRestarted = 0x100;

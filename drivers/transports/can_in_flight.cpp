@@ -10,7 +10,7 @@ namespace {
 
 constexpr Duration kLostAfter = milliseconds(1000);
 constexpr Duration kShortestStall = milliseconds(70);
-constexpr Duration::rep kLongestWaitBits = 190 * 135;
+constexpr Duration::rep kLongestWaitBits = Duration::rep{190} * 135;
 
 }  // namespace
 

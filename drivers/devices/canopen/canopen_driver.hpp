@@ -90,7 +90,7 @@ class CanopenDriver final : public Driver {
   Instant tell_missed(Instant now, EventSink& events);
   SendStatus serve(Task task, std::uint16_t address, std::vector<canopen::ObjectPlace> places,
                    std::vector<std::uint8_t> written, Instant now);
-  void ask_next_object(Instant now);
+  void ask_next_object(Service& service, Instant now);
   void hear_sdo(const CanFrame& frame, Instant now);
   void serve_on(Instant now, EventSink& events);
   [[nodiscard]] NodeState* find(std::uint8_t address);

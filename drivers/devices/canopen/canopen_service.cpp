@@ -105,17 +105,17 @@ SendStatus CanopenDriver::serve(Task task, std::uint16_t address, std::vector<Ob
   service.answer = ServiceAnswer{task, Kind::silent, address, 0, {}, {}};
   service.places = std::move(places);
   service.written = std::move(written);
+  ask_next_object(service, now);
   service_ = std::move(service);
-  ask_next_object(now);
   pump();
   return SendStatus::accepted;
 }
 
-void CanopenDriver::ask_next_object(Instant now) {
-  const ObjectPlace place = service_->places.at(service_->next);
-  const auto node = static_cast<std::uint8_t>(service_->answer.address);
-  outbox_.push_back(service_->written.empty() ? sdo_.read(node, place) : sdo_.write(node, place, service_->written));
-  service_->deadline = now + kSdoTimeout;
+void CanopenDriver::ask_next_object(Service& service, Instant now) {
+  const ObjectPlace place = service.places.at(service.next);
+  const auto node = static_cast<std::uint8_t>(service.answer.address);
+  outbox_.push_back(service.written.empty() ? sdo_.read(node, place) : sdo_.write(node, place, service.written));
+  service.deadline = now + kSdoTimeout;
 }
 
 void CanopenDriver::hear_sdo(const CanFrame& frame, Instant now) {
@@ -129,9 +129,10 @@ void CanopenDriver::hear_sdo(const CanFrame& frame, Instant now) {
 /// Goes on to the next object when one is there, and tells the answer when none is left.
 void CanopenDriver::serve_on(Instant now, EventSink& events) {
   if (!service_) return;
-  ServiceAnswer& answer = service_->answer;
-  const ObjectPlace place = service_->places.at(service_->next);
-  const bool silent = sdo_.state() == SdoClient::State::waiting && now >= service_->deadline;
+  Service& service = *service_;
+  ServiceAnswer& answer = service.answer;
+  const ObjectPlace place = service.places.at(service.next);
+  const bool silent = sdo_.state() == SdoClient::State::waiting && now >= service.deadline;
   if (sdo_.state() == SdoClient::State::waiting && !silent && !down()) return;
   if (sdo_.state() == SdoClient::State::done) {
     answer.kind = answer.task == Task::probe ? Kind::found : Kind::done;
@@ -142,9 +143,9 @@ void CanopenDriver::serve_on(Instant now, EventSink& events) {
     answer.detail = static_cast<int>(sdo_.abort_code());
   }
   if (silent) outbox_.push_back(sdo_.give_up());
-  const bool over = silent || down() || ++service_->next == service_->places.size();
+  const bool over = silent || down() || ++service.next == service.places.size();
   if (!over) {
-    ask_next_object(now);
+    ask_next_object(service, now);
     return;
   }
   events.on_answer(answer);
