@@ -225,6 +225,22 @@ std::vector<char> bound_groups(const Show& show) {
   return bound;
 }
 
+void keep_apart_by_radius(const Show& show, Casting& casting) {
+  double widest_m = 0;
+  for (const Performer& performer : show.performers) widest_m = std::max(widest_m, performer.radius_m);
+  Refinement kinds;
+  std::map<double, std::uint32_t> of_radius{{0.0, 0}};
+  casting.kind.resize(show.performers.size(), 0);
+  for (std::size_t p = 0; p < casting.kind.size(); ++p) {
+    const double radius_m = show.performers[p].radius_m;
+    const bool wide = radius_m + widest_m > show.stage.clearance_m;
+    casting.radius_m.push_back(wide ? radius_m : 0);
+    const auto number = static_cast<std::uint32_t>(of_radius.size());
+    const std::uint32_t radius = of_radius.try_emplace(casting.radius_m.back(), number).first->second;
+    casting.kind[p] = kinds.of(casting.kind[p], radius);
+  }
+}
+
 Result<Casting> casting_of(const Show& show, const std::vector<Station>& stations) {
   Casting casting;
   if (std::any_of(show.groups.begin(), show.groups.end(), [](const Group& group) { return !group.exchange; })) {

@@ -13,6 +13,10 @@ namespace footlight::planner {
 /// @return ErrorKind::input, positioned, where two of these contradict each other. O(stations x people x groups)
 [[nodiscard]] Result<Casting> casting_of(const Show& show, const std::vector<Station>& stations);
 
+/// Makes people whose radii ask for more than the clearance kinds of their own, by radius, so that their walks can keep
+/// the distances that they need and everybody else's need not.
+void keep_apart_by_radius(const Show& show, Casting& casting);
+
 /// For each group whether any formation, or `exchange: false`, keeps others off its places and its people off others'.
 [[nodiscard]] std::vector<char> bound_groups(const Show& show);
 

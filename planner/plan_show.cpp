@@ -47,7 +47,10 @@ class ShowPlanner {
       }
     }
     // Neighbours who stand still are a pitch apart: more cannot be planned for, and the judge has the last word.
-    clearance_m_ = std::max(clearance_m_, std::min(widest_two_m(), show.stage.grid.pitch_m()));
+    // What walks keep by themselves can be asked of everybody; more is asked of those alone who need it.
+    pair_by_pair_ = show.stage.walk == WalkKind::straight && widest_two_m() > show.stage.grid.clearance_bound_m() &&
+                    widest_two_m() > clearance_m_;
+    if (!pair_by_pair_) clearance_m_ = std::max(clearance_m_, std::min(widest_two_m(), show.stage.grid.pitch_m()));
   }
 
   Result<Planned> run() {
@@ -66,6 +69,7 @@ class ShowPlanner {
       if (auto error = collect_stations(ways)) return *error;
       auto casting = casting_of(show_, stations_);
       if (!casting) return casting.error();
+      if (pair_by_pair_) keep_apart_by_radius(show_, *casting);
       chain = walk_through({&limits_, &ways, &stations_, &*casting, clearance_m_, reuse_.stages, &counts_}, progress_);
       if (!chain) return interrupted();
       name_people(*chain);
@@ -317,11 +321,12 @@ class ShowPlanner {
   }
   void note_wide_people() {
     const double bound_m = show_.stage.grid.clearance_bound_m();
-    if (clearance_m_ > show_.stage.clearance_m && clearance_m_ > bound_m) {
-      planned_.plan.sections.front().notes.push_back(fmt::format(
-          "{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: everybody "
-          "is planned that far apart, and many may have to wait",
-          widest_two(), widest_two_m(), bound_m));
+    if (pair_by_pair_ || (clearance_m_ > show_.stage.clearance_m && clearance_m_ > bound_m)) {
+      planned_.plan.sections.front().notes.push_back(
+          fmt::format("{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: {}",
+                      widest_two(), widest_two_m(), bound_m,
+                      pair_by_pair_ ? "only people of the same radius take their places, and some may have to wait"
+                                    : "everybody is planned that far apart, and many may have to wait"));
     }
   }
 
@@ -335,6 +340,7 @@ class ShowPlanner {
   Show limits_;  ///< with the limits of speed that the walks are planned for
   bool slow_for_all_ = false;
   double clearance_m_;
+  bool pair_by_pair_ = false;  ///< wide people keep the others' distance by their own radii
   std::optional<PerformerIndex> widest_;
   std::optional<PerformerIndex> second_;
   std::vector<Station> stations_;

@@ -8,6 +8,7 @@
 
 #include "core/check.hpp"
 #include "planner/repair/lateness.hpp"
+#include "planner/repair/room.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -84,7 +85,12 @@ class Middles {
 class Loosener {
  public:
   Loosener(const ToleranceTask& task, std::vector<CellIndex>& to, std::vector<std::uint32_t>& target_of)
-      : task_(task), grid_(*task.grid), to_(to), target_of_(target_of), limit_m_(task.clearance_m - kRounding_m) {
+      : task_(task),
+        grid_(*task.grid),
+        to_(to),
+        target_of_(target_of),
+        room_(task.clearance_m, task.radius_m, task.grid->pitch_m()),
+        limit_m_(room_.widest_m() - kRounding_m) {
     walks_.reserve(task.from.size());
     for (std::size_t i = 0; i < task.from.size(); ++i) {
       walks_.push_back({grid_.centre(task.from[i]), grid_.centre(to[target_of[i]])});
@@ -96,11 +102,11 @@ class Loosener {
   Tolerance run() {
     std::vector<Pair> open;
     for (const NearPair& pair : near_pairs(walks_, limit_m_ + task_.late_share * longest_m_)) {
-      if (weight(done_.walks[pair.a], done_.walks[pair.b]) > 0) open.emplace_back(pair.a, pair.b);
+      if (weight(pair.a, done_.walks[pair.a], pair.b, done_.walks[pair.b]) > 0) open.emplace_back(pair.a, pair.b);
     }
     if (!open.empty()) prepare();
     const auto punctual = std::count_if(open.begin(), open.end(), [&](const Pair& pair) {
-      return weight(done_.walks[pair.first], done_.walks[pair.second]) == kPunctual;
+      return weight(pair.first, done_.walks[pair.first], pair.second, done_.walks[pair.second]) == kPunctual;
     });
     may_wait_ = static_cast<double>(punctual) <= kMostWaiting * static_cast<double>(walks_.size()) + 8;
     for (int pass = 0; pass < kPasses && !open.empty(); ++pass) {
@@ -122,8 +128,10 @@ class Loosener {
   [[nodiscard]] static double length_m(const Walk& walk) { return distance(walk.from, walk.to); }
   [[nodiscard]] static bool waits(const TimedWalk& timed) { return timed.start > 0 || timed.end < 1; }
 
-  [[nodiscard]] int weight(const TimedWalk& a, const TimedWalk& b) const {
-    const double least = limit_m_ * limit_m_;
+  /// Of two people on these walks.
+  [[nodiscard]] int weight(std::uint32_t one, const TimedWalk& a, std::uint32_t other, const TimedWalk& b) const {
+    const double least_m = room_.between_m(one, other) - kRounding_m;
+    const double least = least_m * least_m;
     if (least_squared_when_late_m2(a, b, task_.late_share) >= least) return 0;
     return least_squared_when_late_m2(a, b, 0) < least ? kPunctual : 1;
   }
@@ -132,7 +140,7 @@ class Loosener {
   [[nodiscard]] std::vector<Pair> still_open(const std::vector<Pair>& before) const {
     std::vector<Pair> open;
     for (const auto& [a, b] : before) {
-      if (weight(done_.walks[a], done_.walks[b]) > 0) open.emplace_back(a, b);
+      if (weight(a, done_.walks[a], b, done_.walks[b]) > 0) open.emplace_back(a, b);
     }
     for (const std::uint32_t person : changed_) {
       visit_troubles(person, done_.walks[person], kNone, [&](std::uint32_t other, int) {
@@ -165,7 +173,7 @@ class Loosener {
       const Point apart = 0.5 * (its.from + its.to) - middle;
       const double most_m = reach_m + half_m_[other];
       if (squared_length(apart) >= most_m * most_m || other == person || other == except) return true;
-      const int found = weight(timed, done_.walks[other]);
+      const int found = weight(person, timed, other, done_.walks[other]);
       return found == 0 || visit(other, found);
     });
   }
@@ -192,7 +200,7 @@ class Loosener {
   };
 
   void solve(Pair pair) {
-    const int now = weight(done_.walks[pair.first], done_.walks[pair.second]);
+    const int now = weight(pair.first, done_.walks[pair.first], pair.second, done_.walks[pair.second]);
     if (now == 0) return;
     best_.reset();
     for (const bool entirely : {true, false}) {
@@ -263,7 +271,7 @@ class Loosener {
       const TimedWalk two{walks_[second], late, 1};
       const int now = entirely_ ? 1 : trouble_of(first, second);
       const int most = now - (best_ ? best_->gain : 0);
-      int after = weight(one, two);
+      int after = weight(first, one, second, two);
       if (after < most) after += trouble(first, one, second, most - after);
       if (after < most) after += trouble(second, two, first, most - after);
       if (keep({first, second, to_[target_of_[first]], 0, 1 - early, now - after, late}, after, most)) return true;
@@ -274,7 +282,7 @@ class Loosener {
   /// Of two people as they walk now, their own pair counted once.
   [[nodiscard]] int trouble_of(std::uint32_t a, std::uint32_t b) const {
     return trouble(a, done_.walks[a], b, kNever) + trouble(b, done_.walks[b], a, kNever) +
-           weight(done_.walks[a], done_.walks[b]);
+           weight(a, done_.walks[a], b, done_.walks[b]);
   }
 
   [[nodiscard]] std::vector<CellIndex> cells_near(Point at) const {
@@ -293,7 +301,7 @@ class Loosener {
     if (!(*task_.may_walk)(one.walk.from, one.walk.to) || !(*task_.may_walk)(two.walk.from, two.walk.to)) return false;
     const int now = entirely_ ? 1 : trouble_of(a, b);
     const int most = now - (best_ ? best_->gain : 0);
-    int after = weight(one, two);
+    int after = weight(a, one, b, two);
     if (after < most) after += trouble(a, one, b, most - after);
     if (after < most) after += trouble(b, two, a, most - after);
     return keep({a, b, {}, 0, 1, now - after}, after, most);
@@ -353,7 +361,8 @@ class Loosener {
   const Grid& grid_;
   std::vector<CellIndex>& to_;
   std::vector<std::uint32_t>& target_of_;
-  double limit_m_;
+  Room room_;
+  double limit_m_;  ///< of any two people
   double longest_m_ = 0;
   std::vector<Walk> walks_;
   std::vector<double> half_m_;

@@ -22,6 +22,7 @@ struct ToleranceTask {
   double longest_m = 0;                 ///< what can be walked in the whole time
   double stagger_share = 0;         ///< of the time: waits before and after walks are multiples of it; 0: nobody waits
   std::span<const char> free = {};  ///< one flag a cell: a target may be moved here; empty: no target moves
+  std::span<const double> radius_m = {};    ///< of each of `from`: two keep the sum where it is more; empty: nobody's
   std::span<const char> fixed_target = {};  ///< one flag a target: stays where it is; empty: none has to
 };
 

@@ -29,6 +29,9 @@ struct Casting {
   std::vector<std::uint32_t> kind;  ///< of each performer, from the first formation to the last; empty: one for all
   std::vector<Binding> bindings;    ///< one for each station; empty: nothing is bound
 
+  /// Of each performer, who then is of one kind with people of the same radius alone; empty: two keep the clearance.
+  std::vector<double> radius_m;
+
   [[nodiscard]] bool free() const { return kind.empty() && bindings.empty(); }
 };
 

@@ -53,7 +53,7 @@ class ChainBuilder {
     if (!pace()) return std::nullopt;
     if (over_cells()) {
       stand_after_each_step();
-    } else if (!mend({&task_, [&](std::size_t k) { return kind_toward(k); }}, chain_, progress_)) {
+    } else if (!mend(mending(), chain_, progress_)) {
       return std::nullopt;
     }
     name_people();
@@ -244,15 +244,24 @@ class ChainBuilder {
   [[nodiscard]] std::uint32_t place_at(std::size_t s, std::uint32_t slot) const {
     return renumbered(s) ? slot : place_of_[s][slot];
   }
-  /// Who may exchange on the way to a stop: the kind of each slot.
+  /// Of each slot on the way to a stop what a list says of the performer who has it as drawn.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> toward(std::size_t k, const std::vector<Value>& of_performer) const {
+    if (of_performer.empty()) return {};
+    const std::size_t before = *chain_.stops[heading_of(k)].station - 1;
+    std::vector<Value> out(chain_.stops[k].own.size());
+    for (std::uint32_t slot = 0; slot < out.size(); ++slot)
+      out[slot] = of_performer[who_[before][place_at(before, slot)]];
+    return out;
+  }
+  /// Who may exchange.
   [[nodiscard]] std::vector<std::uint32_t> kind_toward(std::size_t k) const {
-    const std::size_t interval = *chain_.stops[heading_of(k)].station - 1;
-    if (kinds_.empty() || kinds_[interval].empty()) return {};
-    std::vector<std::uint32_t> kind(chain_.stops[k].own.size());
-    for (std::uint32_t slot = 0; slot < kind.size(); ++slot) {
-      kind[slot] = kinds_[interval][who_[interval][place_at(interval, slot)]];
-    }
-    return kind;
+    return kinds_.empty() ? std::vector<std::uint32_t>() : toward(k, kinds_[*chain_.stops[heading_of(k)].station - 1]);
+  }
+  [[nodiscard]] std::vector<double> radius_toward(std::size_t k) const { return toward(k, casting_.radius_m); }
+  [[nodiscard]] MendTask mending() const {
+    return {&task_, [this](std::size_t k) { return kind_toward(k); },
+            [this](std::size_t k) { return radius_toward(k); }};
   }
   static std::vector<std::uint32_t> numbers(std::size_t size) {
     std::vector<std::uint32_t> out(size);
@@ -298,6 +307,8 @@ class ChainBuilder {
       task.wait_s = stop.exact ? wait_s(stop.arrive) : 0;
       if (over_cells()) task.over_cells = {beats_[k - 1].steps(), beats_[k - 1].step_s};
       const std::vector<std::uint32_t> kind = kind_toward(k);
+      const std::vector<double> radius_m = radius_toward(k);
+      task.radius_m = radius_m;
       task.kind = kind;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {

@@ -143,6 +143,8 @@ class Mender {
     task.speed_mps = speed(goal) / kStepMargin;
     task.time_s = total_s;
     task.lag_s = to_seconds(show_.stage.lag);
+    const std::vector<double> radius_m = task_.radius_toward(end);
+    task.radius_m = radius_m;
     const auto found = pass(task, progress_);
     if (!found || found->needed_s > total_s) {
       whole_.unpassed.push_back({whole_.legs.size(), total_s, {}, 0});

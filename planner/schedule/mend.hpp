@@ -12,6 +12,8 @@ struct MendTask {
   const ChainTask* chain = nullptr;
   /// The kind of each slot on the way to a stop, as StepTask::kind.
   std::function<std::vector<std::uint32_t>(std::size_t stop)> kind_toward;
+  /// The radius of each slot's person, as StepTask::radius_m.
+  std::function<std::vector<double>(std::size_t stop)> radius_toward;
 };
 
 /// Where the walks to an exact formation conflict or cannot be walked, puts other walks in their place, with marks on

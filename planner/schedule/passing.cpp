@@ -11,6 +11,7 @@
 
 #include "core/check.hpp"
 #include "planner/repair/lateness.hpp"
+#include "planner/repair/room.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -76,7 +77,7 @@ class Passer {
         grid_(task.ways->grid()),
         remaining_(remaining),
         stride_m_(stride * grid_.pitch_m()),
-        limit_m_(task.clearance_m - kRounding_m),
+        limit_m_(0),
         late_share_(late ? std::min(1.0, task.lag_s * task.speed_mps / stride_m_) : 0),
         moves_(static_cast<std::size_t>(grid_.size())),
         now_at_(static_cast<std::size_t>(grid_.size()), kNobody),
@@ -90,8 +91,10 @@ class Passer {
       now_.push_back(task.from[i]);
       goal_.push_back(i);
       waited_.push_back(0);
+      if (!task.radius_m.empty()) radius_m_.push_back(task.radius_m[i]);
     }
-    reach_m_ = 2 * stride_m_ + limit_m_;
+    room_ = Room(task.clearance_m, radius_m_, grid_.pitch_m());
+    limit_m_ = room_.widest_m();
   }
 
   /// @param most_s more is not looked for
@@ -178,8 +181,9 @@ class Passer {
   [[nodiscard]] bool clear(std::uint32_t a, CellIndex a_to, std::uint32_t b, CellIndex b_to) const {
     const Walk one{grid_.centre(now_[a]), grid_.centre(a_to)};
     const Walk two{grid_.centre(now_[b]), grid_.centre(b_to)};
-    if (closest_approach(one, two).distance_m < limit_m_) return false;
-    return late_share_ == 0 || least_squared_when_late_m2({one}, {two}, late_share_) >= limit_m_ * limit_m_;
+    const double least_m = room_.between_m(a, b) - kRounding_m;
+    if (closest_approach(one, two).distance_m < least_m) return false;
+    return late_share_ == 0 || least_squared_when_late_m2({one}, {two}, late_share_) >= least_m * least_m;
   }
 
   /// Whether a walk is clear of all that have been chosen and of whoever could stay, but for who stands at its end.
@@ -250,9 +254,10 @@ class Passer {
   const Grid& grid_;
   Remaining& remaining_;
   double stride_m_;
-  double limit_m_;
+  double limit_m_;  ///< of any two people
   double late_share_;
-  double reach_m_ = 0;
+  std::vector<double> radius_m_;
+  Room room_{0, {}, 0};
   std::vector<std::vector<CellIndex>> moves_;
   std::vector<std::uint32_t> order_;  // by cell
   std::vector<CellIndex> now_;

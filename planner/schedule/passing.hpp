@@ -20,9 +20,10 @@ struct PassTask {
   /// As LegTask::kind: targets are exchanged within a kind only. Empty: everybody with everybody.
   std::span<const std::uint32_t> kind = {};
   double clearance_m = 0.5;
-  double speed_mps = 1.4;  ///< nobody walks faster
-  double time_s = 0;       ///< there is
-  double lag_s = 0;        ///< how late anybody may be
+  double speed_mps = 1.4;                 ///< nobody walks faster
+  double time_s = 0;                      ///< there is
+  double lag_s = 0;                       ///< how late anybody may be
+  std::span<const double> radius_m = {};  ///< as LegTask::radius_m
 };
 
 struct Passing {

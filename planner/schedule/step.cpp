@@ -37,6 +37,7 @@ class OrderedStep {
     now_ = taken(task.snap.now, order_);
     own_ = taken(task.snap.own, order_);
     kind_ = taken(task.kind, order_);
+    radius_m_ = taken(task.radius_m, order_);
     if (task.exact) return;
     wanted_ = taken(task.snap.wanted, order_);
     onward_ = taken(task.snap.onward, order_);
@@ -46,7 +47,7 @@ class OrderedStep {
   [[nodiscard]] StageKey key(const StageKey& floor) const {
     StageHash hash("step");
     hash.add(floor).add(task_.exact).add(task_.clearance_m).add(task_.snap.longest_m);
-    hash.list(now_).list(own_).list(kind_).add(task_.walked_s).add(task_.lag_s).add(task_.wait_s);
+    hash.list(now_).list(own_).list(kind_).list(radius_m_).add(task_.walked_s).add(task_.lag_s).add(task_.wait_s);
     if (task_.over_cells) hash.add(task_.over_cells->most).add(task_.over_cells->step_s);
     if (task_.exact) return hash.key();
     hash.add(task_.snap.onward_m).add(goal_.empty() ? 0.0 : task_.snap.goal_m).list(goal_);
@@ -188,6 +189,7 @@ class OrderedStep {
     leg.longest_m = task_.snap.longest_m;
     leg.clearance_m = task_.clearance_m;
     leg.kind = kind_;
+    leg.radius_m = radius_m_;
     leg.late_share = task_.walked_s > 0 ? std::min(1.0, task_.lag_s / task_.walked_s) : 0;
     leg.stagger_share = task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
     leg.free = free;
@@ -240,6 +242,7 @@ class OrderedStep {
   std::vector<Wanted> wanted_;
   std::vector<Wanted> onward_;
   std::vector<std::uint32_t> kind_;
+  std::vector<double> radius_m_;
 };
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;

@@ -23,6 +23,7 @@ struct StepTask {
   std::span<const CellIndex> next_own = {};  ///< where `snap.onward` wants those who want their own cell
   double clearance_m = 0.5;
   std::span<const std::uint32_t> kind = {};  ///< as LegTask::kind
+  std::span<const double> radius_m = {};     ///< as LegTask::radius_m
   double walked_s = 0;                       ///< time between the two instants
   double lag_s = 0;                          ///< how late anybody may be
   double wait_s = 0;                         ///< who waits, waits for multiples of this; 0: nobody does

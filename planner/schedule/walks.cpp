@@ -10,6 +10,7 @@
 #include "planner/assignment/assignment.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/repair/exchange.hpp"
+#include "planner/repair/room.hpp"
 #include "planner/repair/tolerance.hpp"
 
 namespace footlight::planner {
@@ -26,12 +27,13 @@ constexpr std::size_t kMostArcs = 4'000'000;
 
 class Settler {
  public:
-  explicit Settler(const LegTask& task) : task_(task), grid_(task.ways->grid()) {
+  explicit Settler(const LegTask& task)
+      : task_(task), grid_(task.ways->grid()), room_(task.clearance_m, task.radius_m, grid_.pitch_m()) {
     for (const CellIndex cell : task.from) sources_.push_back(grid_.centre(cell));
     cells_.assign(task.to.begin(), task.to.end());
     for (const CellIndex cell : cells_) targets_.push_back(grid_.centre(cell));
     FL_CHECK(sources_.size() == targets_.size() && (task.kind.empty() || task.kind.size() == sources_.size()));
-    reach_m_ = std::max(task.clearance_m, grid_.clearance_bound_m());
+    reach_m_ = std::max(room_.widest_m(), grid_.clearance_bound_m());
   }
 
   Leg run() {
@@ -53,7 +55,11 @@ class Settler {
   [[nodiscard]] std::vector<NearPair> close_pairs(const std::vector<std::uint32_t>& target_of) const {
     std::vector<Walk> walks(sources_.size());
     for (std::size_t i = 0; i < walks.size(); ++i) walks[i] = {sources_[i], targets_[target_of[i]]};
-    return near_pairs(walks, task_.clearance_m - kRounding_m);
+    std::vector<NearPair> close = near_pairs(walks, room_.widest_m() - kRounding_m);
+    std::erase_if(close, [&](const NearPair& pair) {
+      return pair.approach.distance_m >= room_.between_m(pair.a, pair.b) - kRounding_m;
+    });
+    return close;
   }
 
  private:
@@ -100,6 +106,7 @@ class Settler {
     ToleranceTask task{&grid_, task_.from, task_.kind, task_.clearance_m, task_.late_share, &may, task_.longest_m};
     task.stagger_share = task_.stagger_share;
     task.free = task_.free;
+    task.radius_m = task_.radius_m;
     task.fixed_target = task_.fixed_target;
     const Tolerance found = keep_apart_when_late(task, cells_, leg.target_of);
     leg.exchanges += found.exchanges;
@@ -110,8 +117,8 @@ class Settler {
     }
     leg.conflicts.clear();
     leg.late_conflicts.clear();
-    const double least_m = task_.clearance_m - kRounding_m;
     for (const auto& [a, b] : found.left) {
+      const double least_m = room_.between_m(a, b) - kRounding_m;
       const bool punctual = least_squared_when_late_m2(found.walks[a], found.walks[b], 0) < least_m * least_m;
       (punctual ? leg.conflicts : leg.late_conflicts).emplace_back(a, b);
     }
@@ -221,6 +228,7 @@ class Settler {
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   const LegTask& task_;
   const Grid& grid_;
+  Room room_;
   std::vector<Point> sources_;
   std::vector<CellIndex> cells_;  ///< the targets
   std::vector<Point> targets_;    ///< their centres

@@ -27,6 +27,7 @@ struct LegTask {
   double stagger_share = 0;
   /// Where the drawing may give way: one flag a cell, targets may be moved there to keep people apart.
   std::span<const char> free = {};
+  std::span<const double> radius_m = {};  ///< of who is on from[i]: two keep the sum where it is more; empty: nobody's
   std::span<const char> fixed_target = {};  ///< one flag a target that must not be moved; empty: none
 };
 

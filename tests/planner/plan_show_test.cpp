@@ -383,8 +383,8 @@ TEST(PlanShow, RadiiThatTheGridCannotKeepAreNamed) {
   ASSERT_TRUE(planned);
   EXPECT_THAT(planned->plan.sections[0].notes,
               testing::Contains("performers 4 and 8 (radius 0.4 m and 0.35 m) must keep 0.75 m, more than the 0.707 m "
-                                "that walks on this grid keep by themselves: everybody is planned that far apart, and "
-                                "many may have to wait"));
+                                "that walks on this grid keep by themselves: only people of the same radius take their "
+                                "places, and some may have to wait"));
   for (Performer& performer : show.performers) performer.radius_m = 0.6;
   const auto refused = plan_show(show, {growing_film()});
   ASSERT_TRUE(refused);
