@@ -133,8 +133,7 @@ class ChainBuilder {
     const std::size_t people = stations_.front().cells.size();
     slots_.assign(stations_.size(), std::vector<CellIndex>(people));
     place_of_.resize(stations_.size());
-    std::vector<std::uint32_t> at(people);
-    std::iota(at.begin(), at.end(), 0U);
+    std::vector<std::uint32_t> at = numbers(people);
     for (std::size_t s = 0; s < stations_.size(); ++s) {
       for (std::uint32_t slot = 0; slot < people; ++slot) {
         if (s > 0) at[slot] = pairings_[s - 1][at[slot]];
@@ -142,7 +141,7 @@ class ChainBuilder {
       }
       place_of_[s] = at;
       if (s > 0 && !stations_[s].exact) continue;
-      std::iota(at.begin(), at.end(), 0U);
+      at = numbers(people);
     }
   }
 
@@ -239,10 +238,9 @@ class ChainBuilder {
     return wait;
   }
 
-  [[nodiscard]] bool renumbered(std::size_t s) const { return s == 0 || stations_[s].exact; }
   /// Place in a station's list of a slot, as numbered from there on.
   [[nodiscard]] std::uint32_t place_at(std::size_t s, std::uint32_t slot) const {
-    return renumbered(s) ? slot : place_of_[s][slot];
+    return s == 0 || stations_[s].exact ? slot : place_of_[s][slot];
   }
   /// Of each slot on the way to a stop what a list says of the performer who has it as drawn.
   template <class Value>
@@ -254,7 +252,6 @@ class ChainBuilder {
       out[slot] = of_performer[who_[before][place_at(before, slot)]];
     return out;
   }
-  /// Who may exchange.
   [[nodiscard]] std::vector<std::uint32_t> kind_toward(std::size_t k) const {
     return kinds_.empty() ? std::vector<std::uint32_t>() : toward(k, kinds_[*chain_.stops[heading_of(k)].station - 1]);
   }
@@ -306,10 +303,10 @@ class ChainBuilder {
       task.lag_s = to_seconds(task_.show->stage.lag);
       task.wait_s = stop.exact ? wait_s(stop.arrive) : 0;
       if (over_cells()) task.over_cells = {beats_[k - 1].steps(), beats_[k - 1].step_s};
-      const std::vector<std::uint32_t> kind = kind_toward(k);
-      const std::vector<double> radius_m = radius_toward(k);
-      task.radius_m = radius_m;
+      const auto kind = kind_toward(k);
+      const auto radius_m = radius_toward(k);
       task.kind = kind;
+      task.radius_m = radius_m;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {
         for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];

@@ -200,6 +200,20 @@ TEST(Casting, PinnedPeopleStandOnTheirCellsAndAreCounted) {
   EXPECT_TRUE(plan.valid);
 }
 
+TEST(Casting, WidePeopleKeepTheirDistanceAndTheOthersNeedNot) {
+  Show show = test::show_with(30, GridKind::square, 24, 12);
+  show.performers[4].radius_m = show.performers[11].radius_m = 0.4;
+  show.sections.push_back(test::section_of("block", list_of(test::cells_in(show.stage.grid, "A1:F5")), 1, 0, 4, 31));
+  show.sections.push_back(test::section_of("line", list_of(test::cells_in(show.stage.grid, "K4:T6")), 45, 0, 4, 32));
+  const Planned planned = planned_of(show);
+  EXPECT_TRUE(planned.plan.valid) << testing::PrintToString(planned.refusal);
+  EXPECT_TRUE(validate(planned.plan).valid());
+  // The two keep 0.8 m, more than walks on squares keep by themselves; some pair of the others does not.
+  double least_m = 10;
+  for (const TransitionFacts& facts : planned.plan.transitions) least_m = std::min(least_m, facts.clearance_m);
+  EXPECT_LT(least_m, 0.8);
+}
+
 class Regions : public testing::Test {
  protected:
   Regions() : show_(test::show_with(60, GridKind::square, 30, 20)) {
