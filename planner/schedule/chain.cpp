@@ -65,8 +65,8 @@ class ChainBuilder {
     pairings_.resize(stations_.size() - 1);
     const std::vector<std::size_t> changing = changing_intervals(stations_, casting_);
     const bool done = for_each_index(pairings_.size(), "pairing", progress_, [&](std::size_t k) {
-      if (std::binary_search(changing.begin(), changing.end(), k)) return;
-      pairings_[k] = recalled_pair(stations_[k], stations_[k + 1]);
+      const bool changes = std::binary_search(changing.begin(), changing.end(), k);
+      if (!changes) pairings_[k] = recalled_pair(stations_[k], stations_[k + 1]);
     });
     if (!done || casting_.free()) return done;
     const auto pair_one = [&](const Station& from, const Station& to) {
