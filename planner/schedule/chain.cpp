@@ -130,18 +130,17 @@ class ChainBuilder {
 
   /// Slots are numbered anew at each exact formation.
   void follow_slots() {
-    const std::size_t people = stations_.front().cells.size();
-    slots_.assign(stations_.size(), std::vector<CellIndex>(people));
+    std::vector<std::uint32_t> at = numbers(stations_.front().cells.size());
+    slots_.assign(stations_.size(), std::vector<CellIndex>(at.size()));
     place_of_.resize(stations_.size());
-    std::vector<std::uint32_t> at = numbers(people);
     for (std::size_t s = 0; s < stations_.size(); ++s) {
-      for (std::uint32_t slot = 0; slot < people; ++slot) {
+      for (std::uint32_t slot = 0; slot < at.size(); ++slot) {
         if (s > 0) at[slot] = pairings_[s - 1][at[slot]];
         slots_[s][slot] = stations_[s].cells[at[slot]];
       }
       place_of_[s] = at;
       if (s > 0 && !stations_[s].exact) continue;
-      at = numbers(people);
+      at = numbers(at.size());
     }
   }
 

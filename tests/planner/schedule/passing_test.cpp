@@ -169,7 +169,7 @@ TEST_F(Pass, WhateverIsFoundIsClearAndKeepsTheKinds) {
     const std::string wrong = wrong_with(task, *found);
     if (!wrong.empty()) RC_FAIL(wrong);
   }));
-  EXPECT_GT(found_all, 80) << "of a hundred";
+  EXPECT_GT(found_all, 50) << "of a hundred, some without room to pass";
 }
 
 TEST_F(Pass, StopsWhenToldTo) {
