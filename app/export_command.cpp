@@ -4,13 +4,14 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
+#include "app/drone_zip.hpp"
 #include "app/export_files.hpp"
+#include "app/output_place.hpp"
 #include "app/plan_step.hpp"
 #include "config/output_file.hpp"
 
@@ -20,34 +21,53 @@ namespace {
 struct Options {
   PlanChoice choice;
   std::string csv;
+  std::string drone;
   bool unchecked = false;
 };
 
+using NamedFiles = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+/// All texts are made before the first is written; stage.json, which says whether the plan is valid, comes last.
+Result<NamedFiles> files_of(const Plan& plan, const Show& show, const Options& options) {
+  NamedFiles out;
+  if (!options.drone.empty()) {
+    auto zip = drone_zip(drone_tracks(plan, show));
+    if (!zip) return std::move(zip).error();
+    out.emplace_back(options.drone, std::move(zip).value());
+  }
+  if (!options.csv.empty()) {
+    const std::filesystem::path folder = options.csv;
+    out.emplace_back(folder / "marks.csv", marks_csv(plan, show));
+    out.emplace_back(folder / "formations.csv", formations_csv(plan));
+    out.emplace_back(folder / "stage.json", stage_json(plan, show));
+  }
+  return out;
+}
+
 int run(Session& session, const Options& options) {
+  if (options.csv.empty() && options.drone.empty()) {
+    return session.fail(input_error("say what to write: --csv FOLDER, --drone FILE.zip"));
+  }
   auto planned = plan_for(session, options.choice, false);
   if (!planned) return session.fail(planned.error());
   const auto refused = refusal_of(planned->planned);
   if (refused && !options.unchecked) return session.fail(*refused);
-  std::error_code error;
-  std::filesystem::create_directories(options.csv, error);
-  if (error)
-    return session.fail(input_error(fmt::format("cannot make the folder '{}': {}", options.csv, error.message())));
-  const Plan& plan = planned->plan();
-  const Show& show = planned->loaded.show;
-  // All texts are made before the first is written; stage.json, which says whether the plan is valid, comes last.
-  const std::pair<const char*, std::string> files[] = {{"marks.csv", marks_csv(plan, show)},
-                                                       {"formations.csv", formations_csv(plan)},
-                                                       {"stage.json", stage_json(plan, show)}};
-  for (const auto& [name, content] : files) {
-    const std::string file = (std::filesystem::path(options.csv) / name).string();
-    if (auto spared = spare_inputs(planned->loaded, file); !spared) return session.fail(spared.error());
+  if (refused && !options.drone.empty()) {
+    return session.fail(input_error("--drone: the format cannot say that a plan is refused (--csv can)"));
   }
-  for (const auto& [name, content] : files) {
+  const auto files = files_of(planned->plan(), planned->loaded.show, options);
+  if (!files) return session.fail(files.error());
+  if (!options.csv.empty()) {
+    if (auto made = make_folder(options.csv); !made) return session.fail(made.error());
+  }
+  for (const auto& [file, content] : *files) {
+    if (auto spared = spare_inputs(planned->loaded, file.string()); !spared) return session.fail(spared.error());
+  }
+  for (const auto& [file, content] : *files) {
     if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted while exporting"});
-    auto done = config::write_file(std::filesystem::path(options.csv) / name, content);
-    if (!done) return session.fail(done.error());
+    if (auto done = config::write_file(file, content); !done) return session.fail(done.error());
   }
-  for (const auto& [name, content] : files) session.print((std::filesystem::path(options.csv) / name).string());
+  for (const auto& [file, content] : *files) session.print(file.string());
   if (refused) session.note("the plan is refused; stage.json says \"valid\": false");
   return 0;
 }
@@ -58,12 +78,14 @@ void add_export_command(CLI::App& program, Session& session, Chosen& chosen) {
   CLI::App* command = program.add_subcommand("export", "Write everybody's marks for other programs");
   auto options = std::make_shared<Options>();
   options->choice.add_options(*command);
-  command->add_option("--csv", options->csv, "the folder for marks.csv, stage.json and formations.csv")->required();
+  command->add_option("--csv", options->csv, "the folder for marks.csv, stage.json and formations.csv");
+  command->add_option("--drone", options->drone, "a zip of NAME.csv for each performer, as drone tools read it");
   command->add_flag("--unchecked", options->unchecked, "export a refused plan, too, marked as not valid");
   session.add_options(*command, false);
   command->footer(
       "Examples:\n  footlight export show.yaml --csv out/csv\n"
-      "  footlight export show.yaml --plan monday.plan --csv out/monday\n");
+      "  footlight export show.yaml --plan monday.plan --csv out/monday\n"
+      "  footlight export show.yaml --drone show.zip\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
 }
 

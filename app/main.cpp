@@ -13,6 +13,7 @@
 #include "app/command.hpp"
 #include "app/dark_command.hpp"
 #include "app/devices_command.hpp"
+#include "app/diff_command.hpp"
 #include "app/dryrun_command.hpp"
 #include "app/export_command.hpp"
 #include "app/measure_command.hpp"
@@ -31,9 +32,10 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,    add_check_command,   add_plan_command,    add_measure_command, add_why_command,
-    add_export_command, add_sheets_command,  add_preview_command, add_report_command,  add_dryrun_command,
-    add_dark_command,   add_devices_command, add_sim_command,     add_run_command,     add_bundle_command,
+    add_new_command,     add_check_command,  add_plan_command,   add_measure_command,
+    add_why_command,     add_export_command, add_sheets_command, add_preview_command,
+    add_report_command,  add_diff_command,   add_dryrun_command, add_dark_command,
+    add_devices_command, add_sim_command,    add_run_command,    add_bundle_command,
 };
 
 constexpr const char* kFooter =

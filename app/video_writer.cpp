@@ -149,8 +149,9 @@ Status<> VideoWriter::wait() {
   while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Done{};
+  // It ends with status 0 even where the end of the film could not be written: it must have said nothing, too.
   const std::string said = last_line(said_);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.empty()) return Done{};
   return cannot_write(file_, said.empty() ? "ffmpeg has failed" : "ffmpeg: " + said);
 }
 

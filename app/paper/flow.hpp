@@ -21,6 +21,8 @@ class Flow {
   void words(const std::string& words, bool bold = false);
   /// A row of cells with these shares of the width; a cell breaks its lines.
   void row(const std::vector<double>& shares, const std::vector<std::string>& cells, bool bold = false);
+  /// Where the next words would begin, for a drawing below the last ones.
+  [[nodiscard]] double at() const { return y_; }
   void space(double lines) { y_ += lines * paper_.words_pt; }
 
  private:
