@@ -33,7 +33,8 @@ TEST(CommandLine, TellsItsVersionAndItsCommands) {
   const Ran help = footlight({"--help"});
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
-  for (const std::string command : {"new", "check", "plan", "measure", "why", "export", "sheets", "preview", "report", "diff", "dryrun", "dark"}) {
+  for (const std::string command :
+       {"new", "check", "plan", "measure", "why", "export", "sheets", "preview", "report", "diff", "dryrun", "dark"}) {
     EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
     const Ran one = footlight({command, "--help"});
     EXPECT_EQ(one.status, 0);
