@@ -77,7 +77,7 @@ class PictureSection {
 
  private:
   /// Puts the cells of the joint plan in place of the drawings. People begin where it is best for the whole film,
-  /// unless the formation before cannot be left for there in time.
+  /// unless the formation before cannot be left for there in time: then the way there is planned with the film.
   void draw_and_walk(SectionPlan& plan) {
     JointTask task{&film_,
                    &ways_,
@@ -100,9 +100,8 @@ class PictureSection {
     const Duration gap = before_ == nullptr ? Duration::max() : keys_.front().time - before_->depart;
     if (gap <= Duration::zero()) task.first = before_->cells;
     auto joint = plan_jointly(task, progress_);
-    if (joint && gap > Duration::zero() && before_ != nullptr && !can_walk(before_->cells, joint->at[0], gap)) {
-      task.first = plan.stations.front().cells;
-      joint = plan_jointly(task, progress_);
+    if (joint && before_ != nullptr && gap > Duration::zero() && !can_walk(before_->cells, joint->at[0], gap)) {
+      joint = plan_from_before(task, plan.stations.front());
     }
     if (!joint) return;
     if (!keeps_keys(plan.stations, joint->at)) {
@@ -112,26 +111,56 @@ class PictureSection {
     take(std::move(*joint), plan);
   }
 
+  /// The film with the time before it, from where people stand then. Who cannot be in the first formation in time and
+  /// clear of the others comes later.
+  std::optional<JointPlan> plan_from_before(JointTask& task, Station& first) const {
+    const Duration gap = keys_.front().time - before_->depart;
+    const double walk_s = kJointInterval * grid_.pitch_m() / task.speed_mps;
+    const auto room = static_cast<int>(kMostNodes / static_cast<std::size_t>(grid_.size()) - keys_.size());
+    const int steps = std::clamp(static_cast<int>(to_seconds(gap) / walk_s), 1, std::max(1, room));
+    std::vector<KeyFrame> instants;
+    for (int step = 0; step < steps; ++step) {
+      instants.push_back({0, 0, before_->depart + seconds(to_seconds(gap) * step / steps)});
+    }
+    const auto extra = static_cast<std::ptrdiff_t>(instants.size());
+    task.instants.insert(task.instants.begin(), instants.begin(), instants.end());
+    if (!task.given.empty()) task.given.insert(task.given.begin(), instants.size(), {});
+    task.first = before_->cells;
+    auto joint = plan_jointly(task, progress_);
+    if (!joint) return std::nullopt;
+    joint->at.erase(joint->at.begin(), joint->at.begin() + extra);
+    const double longest_m = task.speed_mps * to_seconds(gap) - kRounding_m;
+    const Leg leg = settle({&ways_, before_->cells, joint->at[0], longest_m, show_.stage.clearance_m});
+    first.exact = leg.walkable && leg.conflicts.empty();
+    first.follows = true;
+    return joint;
+  }
+
   /// Whether everybody gets there in time and clear of each other.
   [[nodiscard]] bool can_walk(const std::vector<CellIndex>& from, const std::vector<CellIndex>& to,
                               Duration time) const {
     const double longest_m = section_speed(show_, section_) * to_seconds(time) - kRounding_m;
-    if (ways_.open()) {
-      const Leg leg = settle({&ways_, from, to, longest_m, show_.stage.clearance_m});
-      return leg.walkable && leg.conflicts.empty();
-    }
+    if (longest_m <= 0) return false;
     std::vector<Point> sources;
     std::vector<Point> targets;
     for (const CellIndex cell : from) sources.push_back(grid_.centre(cell));
     for (const CellIndex cell : to) targets.push_back(grid_.centre(cell));
-    return longest_m > 0 && assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
+    if (!ways_.open()) return assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
+    // The least squares keep people clear of each other; where a limit forbids them that is not worth trying.
+    const auto best = assign(sources, targets, WalkCost::squared, std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; best && i < sources.size(); ++i) {
+      if (distance(sources[i], targets[best->target_of[i]]) > longest_m) return false;
+    }
+    if (show_.stage.clearance_m <= grid_.clearance_bound_m()) return true;
+    const Leg leg = settle({&ways_, from, to, longest_m, show_.stage.clearance_m});
+    return leg.walkable && leg.conflicts.empty();
   }
 
   void take(JointPlan joint, SectionPlan& plan) const {
     for_each_index(plan.stations.size(), "formations", progress_, [&](std::size_t n) {
       Station& station = plan.stations[n];
       station.cells = std::move(joint.at[n]);
-      station.follows = n > 0;
+      station.follows = n > 0 || station.follows;
       const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n].frame)];
       const auto shares = cell_shares(picture, grid_, placement_.map);
       station.in_picture =

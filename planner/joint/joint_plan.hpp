@@ -26,7 +26,7 @@ struct JointTask {
   StageToFrame map{};
   double fps = 0;                  ///< frames per second of show
   Instant start;                   ///< of frame 0
-  std::vector<KeyFrame> instants;  ///< ascending, at least two
+  std::vector<KeyFrame> instants;  ///< ascending, at least two; before frame 0 nothing is drawn
   std::size_t people = 0;
   std::vector<CellIndex> first;  ///< where people stand at the first instant; empty: where it is best
   double speed_mps = 0;
@@ -42,7 +42,9 @@ struct JointPlan {
   double gap = 0;
 };
 
-/// Whether the film is small enough: 5 million cells x instants.
+/// More cells x instants than this are not planned: 60 bytes each.
+inline constexpr std::size_t kMostNodes = 5'000'000;
+/// Whether the film is small enough.
 [[nodiscard]] bool can_plan_jointly(const Grid& grid, std::size_t instants);
 
 /// Walks that draw the film: everybody's way is one unit of flow through cells and instants; being on a cell costs what

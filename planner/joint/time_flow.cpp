@@ -5,20 +5,16 @@
 #include <functional>
 
 #include "core/check.hpp"
+#include "planner/joint/time_flow_marks.hpp"
 
 namespace footlight::planner {
 namespace {
 
-constexpr std::int32_t kFar = 1 << 30;
-constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-/// Marks in place of the node before: nobody is here; somebody is kept here whom nobody has joined; here from the
-/// start.
-constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
-constexpr std::uint32_t kUnfilled = 0xFFFFFFFEU;
-constexpr std::uint32_t kSource = 0xFFFFFFFDU;
-bool is_node(std::uint32_t from) { return from < kSource; }
 /// Bids between two looks at whether the user wants to stop.
 constexpr std::size_t kBidsPerLook = 65536;
+/// Bids a node between two times that all labels are raised, and nodes that are filled for each that they are lowered.
+constexpr std::size_t kBidsPerRaise = 2;
+constexpr std::size_t kFillsPerLowering = 4;
 
 }  // namespace
 
@@ -36,21 +32,28 @@ TimeFlowSolver::TimeFlowSolver(const FlowTask& task)
 }
 
 bool TimeFlowSolver::refine(std::int32_t epsilon, const Progress& progress) {
-  FL_CHECK(task_.stand.size() == into_.size());
+  FL_CHECK(task_.stand.size() == into_.size() && epsilon > 0);
   epsilon_ = epsilon;
   look_back();
+  const std::size_t pause = kBidsPerRaise * from_.size();
   for (std::size_t n = 0; enter(); ++n) {
     if (n % kBidsPerLook == 0 && progress.stopped()) return false;
     const std::uint32_t at = active_.back();
     active_.pop_back();
     bid(at);
-    if (n % from_.size() == from_.size() - 1) refresh();
+    if (n % pause == pause - 1) raise_labels();
   }
+  return fill_all(progress);
+}
+
+bool TimeFlowSolver::fill_all(const Progress& progress) {
   for (std::uint32_t v = 0; v < from_.size(); ++v) {
     if (from_[v] == kUnfilled) active_.push_back(v);
   }
+  const std::size_t pause = from_.size() / kFillsPerLowering + 1;
   for (std::size_t n = 0; !active_.empty(); ++n) {
     if (n % kBidsPerLook == 0 && progress.stopped()) return false;
+    if (n % pause == 0) lower_labels();
     const std::uint32_t at = active_.back();
     active_.pop_back();
     fill(at);
@@ -58,8 +61,19 @@ bool TimeFlowSolver::refine(std::int32_t epsilon, const Progress& progress) {
   return true;
 }
 
-std::int32_t TimeFlowSolver::walk_to(std::uint32_t node) const {
-  return task_.intervals[node / cells_ - 1].cost[kind_[node]];
+std::vector<std::int32_t> TimeFlowSolver::prices() const {
+  std::vector<std::int32_t> out(into_.size());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    if (from_[v] != kEmpty && (v >= cells_ || free_start_)) out[v] = std::max(0, into_[v] - out_[v]);
+  }
+  return out;
+}
+
+void TimeFlowSolver::start_from(const std::vector<std::int32_t>& prices) {
+  FL_CHECK(prices.size() == into_.size());
+  into_ = prices;
+  std::fill(out_.begin(), out_.end(), 0);
+  std::fill(from_.begin(), from_.end(), kUnfilled);
 }
 
 /// Labels that agree with the costs and the prices. Whoever stands where a price is asked is kept there, her walks are
@@ -78,7 +92,6 @@ void TimeFlowSolver::look_back() {
       if (kept && k < last_) active_.push_back(v);
     }
   }
-  open_.clear();
   waiting_ = 0;
   if (!free_start_) {
     for (const CellIndex cell : task_.start) {
@@ -87,9 +100,7 @@ void TimeFlowSolver::look_back() {
     }
     return;
   }
-  for (std::uint32_t c = 0; c < cells_; ++c) {
-    if (out_[c] < kFar / 2) offer_start(c);
-  }
+  offer_starts();
   waiting_ = task_.people;
   start_label_ = -kFar;
 }
@@ -98,6 +109,13 @@ void TimeFlowSolver::look_back() {
 bool TimeFlowSolver::enter() {
   while (active_.empty() && waiting_ > 0) begin_somewhere();
   return !active_.empty();
+}
+
+void TimeFlowSolver::offer_starts() {
+  open_.clear();
+  for (std::uint32_t c = 0; c < cells_; ++c) {
+    if (out_[c] < kFar / 2 && from_[c] != kSource) offer_start(c);
+  }
 }
 
 void TimeFlowSolver::offer_start(std::uint32_t cell) {
@@ -145,9 +163,14 @@ TimeFlowSolver::Offer TimeFlowSolver::onward(std::uint32_t at) const {
   return offer;
 }
 
+/// Whether somebody is here who has yet to choose where to go.
+bool TimeFlowSolver::is_bidder(std::uint32_t at) const {
+  return from_[at] != kEmpty && next_[at] == kNone && at < node(last_, 0);
+}
+
 /// Somebody who stands at a node chooses where to go next, or gives the node up.
 void TimeFlowSolver::bid(std::uint32_t at) {
-  if (from_[at] == kEmpty || next_[at] != kNone || at >= node(last_, 0)) return;
+  if (!is_bidder(at)) return;
   const Offer offer = onward(at);
   std::int32_t back = kFar;
   if (is_node(from_[at])) {
@@ -176,13 +199,6 @@ void TimeFlowSolver::bid(std::uint32_t at) {
   next_[at] = to;
   from_[to] = at;
   kind_[to] = offer.kind;
-}
-
-/// What has become dearer later on is known everywhere at once, not only where somebody came to find out.
-void TimeFlowSolver::refresh() {
-  for (std::uint32_t v = node(last_, 0); v-- > 0;) {
-    if (from_[v] == kEmpty) into_[v] = out_[v] = std::max(out_[v], onward(v).best);
-  }
 }
 
 void TimeFlowSolver::leave(std::uint32_t at) {

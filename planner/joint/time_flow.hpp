@@ -47,8 +47,10 @@ struct TimeFlow {
 /// Cheap walks of all people through all intervals together: a minimum-cost flow in the network of cells and instants
 /// with one person a node. Epsilon relaxation with scaling (Bertsekas, Tsitsiklis 1989, sections 5.3-5.4), an auction:
 /// whoever stands at a node bids for the next one up to what her second choice would cost, who is outbid chooses again
-/// or takes her last step back, and places that are too dear for everybody come down until somebody comes. The first
-/// labels are the exact costs to the end of somebody who is alone. Deterministic. Memory: 21 bytes a node.
+/// or takes her last step back, and places that are too dear for everybody come down until somebody comes. Now and then
+/// all labels are set at once to the shortest ways through the residual network (price updates, Goldberg 1997): without
+/// that the last few people bid against each other one epsilon at a time. The first labels are the exact costs to the
+/// end of somebody who is alone. Deterministic. Memory: 33 bytes a node.
 class TimeFlowSolver {
  public:
   /// @param task must outlive the solver; its costs may change between calls of `refine`
@@ -59,6 +61,10 @@ class TimeFlowSolver {
   /// alone.
   /// @return false when stopped
   bool refine(std::int32_t epsilon, const Progress& progress);
+  /// What being at each node costs beyond its own cost, since others want to be there, too; after `refine`.
+  [[nodiscard]] std::vector<std::int32_t> prices() const;
+  /// The next `refine` starts from these prices, none below 0, instead of those that it found.
+  void start_from(const std::vector<std::int32_t>& prices);
   /// After at least one `refine`. O(walks)
   [[nodiscard]] TimeFlow result() const;
 
@@ -72,11 +78,13 @@ class TimeFlowSolver {
   };
 
   [[nodiscard]] std::uint32_t node(std::uint32_t k, std::uint32_t cell) const { return k * cells_ + cell; }
-  [[nodiscard]] std::int32_t walk_to(std::uint32_t node) const;
+  [[nodiscard]] std::int32_t walk_to(std::uint32_t node) const {
+    return task_.intervals[node / cells_ - 1].cost[kind_[node]];
+  }
   [[nodiscard]] Offer onward(std::uint32_t at) const;
   [[nodiscard]] Offer backward(std::uint32_t at) const;
   void look_back();
-  void refresh();
+  bool fill_all(const Progress& progress);
   bool enter();
   void begin_somewhere();
   void offer_start(std::uint32_t cell);
@@ -87,6 +95,23 @@ class TimeFlowSolver {
   void give_up(std::uint32_t at, std::int32_t label);
   [[nodiscard]] std::vector<std::uint32_t> starts() const;
   [[nodiscard]] std::int64_t bound() const;
+  [[nodiscard]] bool is_bidder(std::uint32_t at) const;
+
+  // Labels set at once: time_flow_labels.cpp.
+  void raise_labels();
+  void lower_labels();
+  void forget_distances();
+  template <class Settle>
+  std::int32_t settle_distances(std::size_t wanted, Settle settle);
+  void move_labels(std::int32_t furthest, std::int32_t step);
+  void offer_starts();
+  [[nodiscard]] std::int32_t steps(std::int32_t cost) const;
+  void put(std::uint32_t point, std::int32_t distance);
+  void reach_in(std::uint32_t at, std::int32_t distance) { put(2 * at, distance); }
+  void reach_out(std::uint32_t at, std::int32_t distance) { put(2 * at + 1, distance); }
+  void reach_source(std::int32_t distance) { put(2 * static_cast<std::uint32_t>(from_.size()), distance); }
+  void ways_into(std::uint32_t point, std::int32_t distance);
+  void ways_out_of(std::uint32_t point, std::int32_t distance);
 
   const FlowTask& task_;
   std::uint32_t cells_;
@@ -99,9 +124,11 @@ class TimeFlowSolver {
   std::vector<std::uint32_t> next_;
   std::vector<std::uint8_t> kind_;  ///< of the walk here
   std::vector<std::uint32_t> active_;
-  std::vector<std::uint64_t> open_;  ///< free cells of the first instant, a heap, the cheapest on top
-  std::int32_t start_label_ = 0;     ///< what beginning anywhere costs at most
-  std::size_t waiting_ = 0;          ///< people who have not begun
+  std::vector<std::int32_t> distance_;             ///< of the way into each node, of the way out of it, of the source
+  std::vector<std::vector<std::uint32_t>> queue_;  ///< points by distance
+  std::vector<std::uint64_t> open_;                ///< free cells of the first instant, a heap, the cheapest on top
+  std::int32_t start_label_ = 0;                   ///< what beginning anywhere costs at most
+  std::size_t waiting_ = 0;                        ///< people who have not begun
 };
 
 }  // namespace footlight::planner
