@@ -78,7 +78,7 @@ Sampling read_sampling(MappingReader sampling) {
 PlannerOptions read_planner(MappingReader planner) {
   PlannerOptions out;
   if (const auto model = planner.choice("model")) {
-    constexpr std::array kModels{PlannerModel::hierarchical, PlannerModel::flat, PlannerModel::joint};
+    constexpr std::array kModels{PlannerModel::joint, PlannerModel::hierarchical, PlannerModel::flat};
     out.model = kModels.at(static_cast<std::size_t>(*model));
   }
   out.layers = planner.integer("layers").value_or(out.layers);

@@ -240,10 +240,11 @@ const Listing& planner_listing() {
           {.key = "model",
            .type = Type::choice,
            .doc =
-               "`hierarchical` keeps regions of people together, `flat` matches everybody at once, `joint` plans the "
-               "drawing of a video and everybody's walks together.",
-           .fallback = "hierarchical",
-           .choices = {"hierarchical", "flat", "joint"}},
+               "`joint` plans the drawing of a video and everybody's walks together, `hierarchical` keeps regions of "
+               "people together, `flat` matches everybody at once; what is no video is matched as by `hierarchical` "
+               "where it says `joint`.",
+           .fallback = "joint",
+           .choices = {"joint", "hierarchical", "flat"}},
           {.key = "layers", .type = Type::integer, .doc = "Layers of the hierarchy.", .fallback = "2", .range = {1, 6}},
           {.key = "region",
            .type = Type::mapping,

@@ -79,11 +79,12 @@ struct Sampling {
   bool snap_to_count = true;               ///< key frames fall on whole counts
 };
 
+/// `joint` is meant for videos; other formations are matched as by `hierarchical`.
 enum class PlannerModel { flat, hierarchical, joint };
 enum class PairingCost { squared, euclidean };
 
 struct PlannerOptions {
-  PlannerModel model = PlannerModel::hierarchical;
+  PlannerModel model = PlannerModel::joint;
   int layers = 2;                  ///< hierarchical: 1..6
   int region_size = 60;            ///< most people in a region of the first division (T_n)
   double region_variance_m2 = 30;  ///< largest mean squared distance from a region's anchor (T_v), m^2

@@ -98,10 +98,16 @@ class PictureSection {
       }
     }
     const Duration gap = before_ == nullptr ? Duration::max() : keys_.front().time - before_->depart;
-    if (gap <= Duration::zero()) task.first = before_->cells;
+    if (gap <= Duration::zero()) task.first = before_->cells;  // no time to go anywhere else
     auto joint = plan_jointly(task, progress_);
-    if (joint && before_ != nullptr && gap > Duration::zero() && !can_walk(before_->cells, joint->at[0], gap)) {
-      joint = plan_from_before(task, plan.stations.front());
+    plan.begin = task.first.empty() ? Begin::where_best : Begin::from_before;
+    if (joint && before_ != nullptr && task.first.empty()) {
+      Station first = plan.stations.front();
+      first.cells = joint->at[0];
+      if (!can_begin(show_, index_, ways_, *before_, first)) {
+        plan.begin = Begin::from_before;
+        joint = plan_from_before(task, plan.stations.front());
+      }
     }
     if (!joint) return;
     if (!keeps_keys(plan.stations, joint->at)) {
@@ -134,26 +140,6 @@ class PictureSection {
     first.exact = leg.walkable && leg.conflicts.empty();
     first.follows = true;
     return joint;
-  }
-
-  /// Whether everybody gets there in time and clear of each other.
-  [[nodiscard]] bool can_walk(const std::vector<CellIndex>& from, const std::vector<CellIndex>& to,
-                              Duration time) const {
-    const double longest_m = section_speed(show_, section_) * to_seconds(time) - kRounding_m;
-    if (longest_m <= 0) return false;
-    std::vector<Point> sources;
-    std::vector<Point> targets;
-    for (const CellIndex cell : from) sources.push_back(grid_.centre(cell));
-    for (const CellIndex cell : to) targets.push_back(grid_.centre(cell));
-    if (!ways_.open()) return assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
-    // The least squares keep people clear of each other; where a limit forbids them that is not worth trying.
-    const auto best = assign(sources, targets, WalkCost::squared, std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; best && i < sources.size(); ++i) {
-      if (distance(sources[i], targets[best->target_of[i]]) > longest_m) return false;
-    }
-    if (show_.stage.clearance_m <= grid_.clearance_bound_m()) return true;
-    const Leg leg = settle({&ways_, from, to, longest_m, show_.stage.clearance_m});
-    return leg.walkable && leg.conflicts.empty();
   }
 
   void take(JointPlan joint, SectionPlan& plan) const {
@@ -237,7 +223,7 @@ class PictureSection {
         keys_ = with_given(std::move(instants), given, kJointInterval * walk_s);
         return std::nullopt;
       }
-      why_not_ = "more than 5 million cells times instants";
+      why_not_ = "more than 3 million cells times instants";
     }
     Sampling sampling = section_.sampling;
     if (section_.planner.model == PlannerModel::flat && !given.empty()) {
@@ -411,6 +397,26 @@ class PictureSection {
 };
 
 }  // namespace
+
+bool can_begin(const Show& show, SectionIndex section, const Ways& ways, const Station& before, const Station& first) {
+  const double time_s = to_seconds(first.arrive - before.depart);
+  const double longest_m = section_speed(show, show.sections[section.at()]) * time_s - kRounding_m;
+  if (longest_m <= 0) return false;
+  const Grid& grid = show.stage.grid;
+  std::vector<Point> sources;
+  std::vector<Point> targets;
+  for (const CellIndex cell : before.cells) sources.push_back(grid.centre(cell));
+  for (const CellIndex cell : first.cells) targets.push_back(grid.centre(cell));
+  if (!ways.open()) return assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
+  // The least squares keep people clear of each other; where a limit forbids them that is not worth trying.
+  const auto best = assign(sources, targets, WalkCost::squared, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; best && i < sources.size(); ++i) {
+    if (distance(sources[i], targets[best->target_of[i]]) > longest_m) return false;
+  }
+  if (show.stage.clearance_m <= grid.clearance_bound_m()) return true;
+  const Leg leg = settle({&ways, before.cells, first.cells, longest_m, show.stage.clearance_m});
+  return leg.walkable && leg.conflicts.empty();
+}
 
 Result<SectionPlan> plan_pictures(const Show& show, SectionIndex section, const Film& film, const Ways& ways,
                                   const Station* before, const Progress& progress) {

@@ -31,9 +31,17 @@ struct Station {
   std::vector<std::pair<PerformerIndex, CellIndex>> pins;  ///< who stands where by name
 };
 
+/// Where people are in the first formation of a section.
+enum class Begin {
+  as_drawn,     ///< wherever its picture says
+  where_best,   ///< where it is best for the whole film, unless the formation before is too far away
+  from_before,  ///< as near to that as they can be in time from the formation before
+};
+
 /// What one section asks for, before anybody walks.
 struct SectionPlan {
   PlanSection section;
+  Begin begin = Begin::as_drawn;
   std::vector<Station> stations;  ///< ascending by time
 };
 

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "planner/by_hand.hpp"
 #include "planner/casting.hpp"
 #include "planner/parallel.hpp"
+#include "planner/picture_section.hpp"
 #include "planner/plan_notes.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/proof.hpp"
@@ -57,8 +59,7 @@ class ShowPlanner {
     FL_CHECK(films_.size() == show_.sections.size());
     if (show_.performers.empty()) return input_error(show_.file + ": error: performers: the show has nobody in it");
     if (show_.sections.empty()) return input_error(show_.file + ": error: sections: the show has no section");
-    const double widest_m = show_.performers[widest_->at()].radius_m;
-    const Ways ways(show_.stage, std::max(show_.stage.clearance_m / 2, widest_m));
+    const Ways ways = ways_of();
     const bool slow = std::any_of(show_.performers.begin(), show_.performers.end(),
                                   [](const Performer& performer) { return performer.max_speed_mps > 0; });
     if (slow) {
@@ -122,17 +123,42 @@ class ShowPlanner {
     return std::move(planned_);
   }
 
+  /// See formations_known.
+  std::vector<bool> known() {
+    if (show_.performers.empty()) return std::vector<bool>(show_.sections.size(), false);
+    const Ways ways = ways_of();
+    Show limits = show_;
+    for (Performer& performer : limits.performers) performer.max_speed_mps = 0;
+    // With limits of people's own everything may have to be planned for the slowest.
+    std::vector<bool> out = known(limits, ways);
+    stations_.clear();
+    const std::vector<bool> slow = known(show_, ways);
+    for (std::size_t s = 0; s < out.size(); ++s) out[s] = out[s] && slow[s];
+    return out;
+  }
+
  private:
+  [[nodiscard]] Ways ways_of() const {
+    return {show_.stage, std::max(show_.stage.clearance_m / 2, show_.performers[widest_->at()].radius_m)};
+  }
+
   std::optional<Error> collect_stations(const Ways& ways) {
+    draft_videos(ways);
+    if (progress_.stopped()) return interrupted();
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       auto section = recalled_section(SectionIndex::of(s), ways);
       if (!section) return section.error();
-      if (auto error = apply_overrides(show_, SectionIndex::of(s), ways, *section)) return error;
-      for (Station& station : section->stations) {
-        if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
-        stations_.push_back(std::move(station));
-      }
+      if (auto error = append(SectionIndex::of(s), ways, *section)) return error;
       planned_.plan.sections.push_back(std::move(section->section));
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> append(SectionIndex index, const Ways& ways, SectionPlan& section) {
+    if (auto error = apply_overrides(show_, index, ways, section)) return error;
+    for (Station& station : section.stations) {
+      if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
+      stations_.push_back(std::move(station));
     }
     return std::nullopt;
   }
@@ -140,22 +166,86 @@ class ShowPlanner {
   /// Formations of a section that were planned before, without the film; else anew.
   Result<SectionPlan> recalled_section(SectionIndex index, const Ways& ways) {
     const std::size_t s = index.at();
-    const bool known = reuse_.stages != nullptr && s < reuse_.film_ids.size() && !reuse_.film_ids[s].empty();
-    const Station* before = stations_.empty() ? nullptr : &stations_.back();
-    StageKey key{};
     ++sections_.all;
-    if (known) {
-      key = section_key(limits_, index, reuse_.film_ids[s], before);
-      if (const auto bytes = reuse_.stages->find(key)) {
-        StageReader reader(*bytes);
-        SectionPlan plan = decode_section(reader, index);
-        if (reader.whole()) return plan;
-      }
-    }
+    if (auto plan = recall(limits_, index, ways)) return std::move(*plan);
     ++sections_.anew;
-    auto section = plan_section(limits_, index, films_[s], ways, before, progress_);
-    if (section && known) reuse_.stages->keep(key, encode_section(*section));
-    return section;
+    auto section = taken_draft(index, ways);
+    if (!section) section = plan_section(limits_, index, films_[s], ways, before(), progress_);
+    if (*section && has_id(s)) {
+      const Station* from = (*section)->begin == Begin::from_before ? before() : nullptr;
+      reuse_.stages->keep(section_key(limits_, index, reuse_.film_ids[s], from), encode_section(**section));
+    }
+    return std::move(*section);
+  }
+
+  /// Videos planned at the same time, as if nobody had been anywhere before.
+  void draft_videos(const Ways& ways) {
+    drafts_.assign(show_.sections.size(), std::nullopt);
+    std::vector<SectionIndex> videos;
+    for (std::size_t s = 0; s < drafts_.size(); ++s) {
+      const Section& section = limits_.sections[s];
+      if (section.planner.model != PlannerModel::joint || !std::holds_alternative<VideoSource>(section.from)) continue;
+      const bool no_gap = s > 0 && limits_.sections[s - 1].end_count() >= section.start_count;
+      if (films_[s] && !no_gap && !recall_from(limits_, SectionIndex::of(s), nullptr))
+        videos.push_back(SectionIndex::of(s));
+    }
+    if (videos.size() < 2) return;
+    for_each_index(videos.size(), "joint", {{}, progress_.stop}, [&](std::size_t n) {
+      const Progress quiet{{}, progress_.stop};
+      drafts_[videos[n].at()] = plan_section(limits_, videos[n], films_[videos[n].at()], ways, nullptr, quiet);
+    });
+  }
+  std::optional<Result<SectionPlan>> taken_draft(SectionIndex index, const Ways& ways) {
+    auto draft = std::exchange(drafts_[index.at()], std::nullopt);
+    if (draft && *draft && !fits_before(limits_, index, ways, **draft)) return std::nullopt;
+    return draft;
+  }
+
+  /// Whether a plan that was made without the formation before holds with it.
+  [[nodiscard]] bool fits_before(const Show& limits, SectionIndex index, const Ways& ways,
+                                 const SectionPlan& plan) const {
+    return plan.begin != Begin::where_best || before() == nullptr ||
+           can_begin(limits, index, ways, *before(), plan.stations.front());
+  }
+  [[nodiscard]] bool has_id(std::size_t s) const {
+    return reuse_.stages != nullptr && s < reuse_.film_ids.size() && !reuse_.film_ids[s].empty();
+  }
+  [[nodiscard]] const Station* before() const { return stations_.empty() ? nullptr : &stations_.back(); }
+  [[nodiscard]] std::optional<SectionPlan> recall(const Show& limits, SectionIndex index, const Ways& ways) const {
+    auto plan = recall_from(limits, index, nullptr);
+    if (plan && fits_before(limits, index, ways, *plan)) return plan;
+    return before() == nullptr ? std::nullopt : recall_from(limits, index, before());
+  }
+  [[nodiscard]] std::optional<SectionPlan> recall_from(const Show& limits, SectionIndex index,
+                                                       const Station* from) const {
+    if (!has_id(index.at())) return std::nullopt;
+    const auto bytes = reuse_.stages->find(section_key(limits, index, reuse_.film_ids[index.at()], from));
+    if (!bytes) return std::nullopt;
+    StageReader reader(*bytes);
+    SectionPlan plan = decode_section(reader, index);
+    if (!reader.whole()) return std::nullopt;
+    return plan;
+  }
+
+  /// Each section may ask where the one before it leaves people.
+  std::vector<bool> known(const Show& limits, const Ways& ways) {
+    std::vector<bool> out(show_.sections.size(), false);
+    bool all_before = true;
+    for (std::size_t s = 0; s < out.size(); ++s) {
+      const SectionIndex index = SectionIndex::of(s);
+      if (!all_before) stations_.clear();
+      std::optional<SectionPlan> section = recall(limits, index, ways);
+      out[s] = section.has_value();
+      if (!section && all_before && !has_film(show_.sections[s])) {
+        auto listed = plan_section(limits, index, std::nullopt, ways, before(), progress_);
+        if (listed) section = std::move(*listed);
+      }
+      all_before = all_before && section && !append(index, ways, *section);
+    }
+    return out;
+  }
+  static bool has_film(const Section& section) {
+    return std::holds_alternative<VideoSource>(section.from) || std::holds_alternative<ImageSource>(section.from);
   }
 
   /// A section that begins when the one before ends has no time to walk: a film takes people as they stand, anything
@@ -344,6 +434,7 @@ class ShowPlanner {
   std::optional<PerformerIndex> widest_;
   std::optional<PerformerIndex> second_;
   std::vector<Station> stations_;
+  std::vector<std::optional<Result<SectionPlan>>> drafts_;  ///< of videos, until they are taken
   std::vector<std::vector<std::uint32_t>> slot_;
   Planned planned_;
 };
@@ -358,18 +449,7 @@ Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film
 }
 
 std::vector<bool> formations_known(const Show& show, const Reuse& reuse) {
-  Show limits = show;
-  for (Performer& performer : limits.performers) performer.max_speed_mps = 0;
-  std::vector<bool> known;
-  for (std::size_t s = 0; s < show.sections.size(); ++s) {
-    const bool asked = reuse.stages != nullptr && s < reuse.film_ids.size() && !reuse.film_ids[s].empty();
-    const auto found = [&](const Show& one) {
-      return reuse.stages->find(section_key(one, SectionIndex::of(s), reuse.film_ids[s], nullptr)).has_value();
-    };
-    // With limits of people's own everything may have to be planned for the slowest.
-    known.push_back(asked && found(limits) && found(show));
-  }
-  return known;
+  return ShowPlanner(show, {}, {}, reuse).known();
 }
 
 }  // namespace footlight::planner

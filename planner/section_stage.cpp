@@ -39,8 +39,7 @@ StageKey section_key(const Show& show, SectionIndex index, const std::string& fi
   hash.add(options.cost).add(section.regions.empty());
   for (const TempoChange& change : show.tempo.changes()) hash.add(change.count).add(change.bpm);
   for (const SectionKey& key : section.keys) hash.add(key.count.has_value()).add(key.count.value_or(key.film_s));
-  // Only a section whose walks are planned with its drawing asks where people come from.
-  if (options.model == PlannerModel::joint && before != nullptr) hash.list(before->cells).add(ns(before->depart));
+  if (before != nullptr) hash.list(before->cells).add(ns(before->depart));
   return hash.key();
 }
 
@@ -56,7 +55,7 @@ std::string encode_section(const SectionPlan& plan) {
   }
   out.list(section.reserve).add(section.notes.size());
   for (const std::string& note : section.notes) out.text(note);
-  out.add(plan.stations.size());
+  out.add(plan.begin).add(plan.stations.size());
   for (const Station& station : plan.stations) {
     out.add(station.count).add(ns(station.arrive)).add(ns(station.depart));
     out.add(station.frame.has_value()).add(station.frame.value_or(0)).list(station.cells);
@@ -89,6 +88,7 @@ SectionPlan decode_section(StageReader& reader, SectionIndex index) {
   for (auto notes = reader.get<std::size_t>(); notes > 0 && !reader.failed(); --notes) {
     section.notes.push_back(reader.text());
   }
+  plan.begin = reader.get<Begin>();
   for (auto stations = reader.get<std::size_t>(); stations > 0 && !reader.failed(); --stations) {
     Station station;
     station.section = index;

@@ -9,7 +9,8 @@
 namespace footlight::planner {
 
 /// What the formations of a section that has a film depend on; overrides come after.
-/// @param film_id names the film's bytes and how they are read  @param before as for `plan_section`
+/// @param film_id names the film's bytes and how they are read
+/// @param before the formation before, for a plan that begins from there; else none
 [[nodiscard]] StageKey section_key(const Show& show, SectionIndex section, const std::string& film_id,
                                    const Station* before);
 

@@ -50,7 +50,8 @@ Blocks::Blocks(const Ways& ways, const CellFlags& reserve, int factor)
     const Point at = grid_.centre(CellIndex::of(c));
     const int column = std::min(columns_ - 1, static_cast<int>((at.x - left_m_) / side_m_));
     const int row = std::min(rows_ - 1, static_cast<int>((at.y - front_m_) / side_m_));
-    const std::size_t block = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    const std::size_t block =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     block_of_[c] = static_cast<std::uint32_t>(block);
     if (!ways.can_stand(CellIndex::of(c))) continue;
     ++stand[block];
@@ -80,7 +81,8 @@ std::vector<float> Blocks::at_cells(const std::vector<float>& of_blocks) const {
     const auto value = [&](double i, double j) {
       const int p = std::clamp(static_cast<int>(i), 0, columns_ - 1);
       const int q = std::clamp(static_cast<int>(j), 0, rows_ - 1);
-      return static_cast<double>(of_blocks[static_cast<std::size_t>(q) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(p)]);
+      return static_cast<double>(
+          of_blocks[static_cast<std::size_t>(q) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(p)]);
     };
     const double u = x - column;
     const double v = y - row;

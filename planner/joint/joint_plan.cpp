@@ -29,7 +29,7 @@ struct Scale {
 constexpr std::array kScales{Scale{4, 2, 3}, Scale{2, 1, 2}, Scale{1, 1, 1}};
 constexpr std::size_t kLeastPeople = 16;
 constexpr int kRoundsAlone = 3;
-constexpr std::array kEpsilonsAtFirst{1000, 200, 50};
+constexpr std::array kEpsilonsAtFirst{1000, 200, 50, 20};
 constexpr std::array kEpsilons{200, 50};
 
 class JointPlanner {

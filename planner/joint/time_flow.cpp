@@ -76,6 +76,11 @@ void TimeFlowSolver::start_from(const std::vector<std::int32_t>& prices) {
   std::fill(from_.begin(), from_.end(), kUnfilled);
 }
 
+bool TimeFlowSolver::can_stand(std::uint32_t k, std::uint32_t cell) const {
+  const Reach& reach = *task_.intervals[std::min(k, last_ - 1)].reach;
+  return reach.first[cell] != reach.first[cell + 1];
+}
+
 /// Labels that agree with the costs and the prices. Whoever stands where a price is asked is kept there, her walks are
 /// forgotten: she is active, and the node waits for somebody to come.
 void TimeFlowSolver::look_back() {
@@ -85,7 +90,7 @@ void TimeFlowSolver::look_back() {
     for (std::uint32_t c = 0; c < cells_; ++c) {
       const std::uint32_t v = node(k, c);
       out_[v] = k == last_ ? task_.stand[v] : onward(v).best;
-      const bool kept = from_[v] != kEmpty && into_[v] > 0 && (k > 0 || free_start_);
+      const bool kept = from_[v] != kEmpty && into_[v] > 0 && (k > 0 || free_start_) && can_stand(k, c);
       from_[v] = kept ? kUnfilled : kEmpty;
       next_[v] = kNone;
       into_[v] = out_[v] + (kept ? into_[v] : 0);

@@ -81,6 +81,7 @@ class TimeFlowSolver {
   [[nodiscard]] std::int32_t walk_to(std::uint32_t node) const {
     return task_.intervals[node / cells_ - 1].cost[kind_[node]];
   }
+  [[nodiscard]] bool can_stand(std::uint32_t k, std::uint32_t cell) const;
   [[nodiscard]] Offer onward(std::uint32_t at) const;
   [[nodiscard]] Offer backward(std::uint32_t at) const;
   void look_back();

@@ -105,6 +105,33 @@ TEST(PlanShow, DrawsBetterAndWalksLessWhenItPlansBothTogether) {
   EXPECT_LE(measured[2].total_distance_m, 1.5 * measured[0].total_distance_m);
 }
 
+/// Four hundred people, so that prices are found on coarser blocks first.
+TEST(PlanShow, DrawsAPictureOfHundredsThatMovesAwayAsFastAsTheyWalk) {
+  Show show = show_with(400, GridKind::square, 64, 40);
+  show.sections.push_back(section_of("wander", video(), 1, 40, 0, 31));
+  const Film film = tests::film_of(41, [](int f) { return tests::disc(128, 80, 38 + f, 40, 22); });
+  const auto planned = plan_show(show, {film});
+  ASSERT_TRUE(planned) << planned.error().message;
+  expect_sound(*planned, show);
+  EXPECT_LT(*measure(planned->plan, {film}).show.theta_iou, 0.2);
+}
+
+/// A film that begins too far away for the time before it: whoever needs longer comes later, and nobody is refused.
+TEST(PlanShow, IsNotRefusedWhereAFilmBeginsTooFarAway) {
+  for (const double start : {13.0, 25.0}) {
+    Show show = show_with(90, GridKind::square, 60, 16);
+    show.sections.push_back(section_of("near", video(), 1, 10, 0, 31));
+    show.sections.push_back(section_of("far", video(), start, 40, 0, 32));
+    const Film near = tests::film_of(11, [](int) { return tests::disc(240, 64, 40, 32, 20); });
+    const Film far = tests::film_of(41, [](int) { return tests::disc(240, 64, 200, 32, 20); });
+    const auto planned = plan_show(show, {near, far});
+    ASSERT_TRUE(planned) << planned.error().message;
+    EXPECT_TRUE(planned->plan.valid) << testing::PrintToString(planned->refusal);
+    expect_sound(*planned, show);
+    EXPECT_GT(planned->plan.formations.back().in_picture, 80);
+  }
+}
+
 TEST(PlanShow, TheJointPlanIsTheSameForAnyNumberOfThreads) {
   Show show = growing_show(70);
   show.sections[0].planner.model = PlannerModel::joint;
@@ -444,6 +471,7 @@ TEST(PlanShow, ALittleTooFastIsNotGivenAsARatio) {
 
 TEST(PlanShow, WhatGivesWayIsToldWithItsShareAndTheWorstFormation) {
   Show show = growing_show(70);
+  show.sections[0].planner.model = PlannerModel::hierarchical;
   show.stage.max_speed_mps = 0.3;
   const auto planned = plan_show(show, {growing_film()});
   ASSERT_TRUE(planned);
@@ -507,6 +535,7 @@ TEST(PlanShow, ImageIsHeldAndPeopleStandStill) {
 
 TEST(PlanShow, ShortestDurationIsOneInWhichNobodyGivesWay) {
   Show show = growing_show(40);
+  show.sections[0].planner.model = PlannerModel::hierarchical;
   const auto planned = plan_show(show, {growing_film()});
   ASSERT_TRUE(planned && planned->shortest.front().has_value());
   EXPECT_GT(planned->shortest.front()->counts, 1);

@@ -123,8 +123,23 @@ TEST(Replan, AChangedFormationReplansItsTwoTransitionsAndNotTheShow) {
   EXPECT_GT(after->facts.all, 8U);
 }
 
+TEST(Replan, AFilmThatBeginsWhereItIsBestIsKeptWhenTheFormationBeforeItChanges) {
+  Show show = three_sections();
+  Stages stages;
+  const Reuse reuse{&stages, ids()};
+  const auto before = plan_show(show, three_films(), {}, reuse);
+  ASSERT_TRUE(before);
+  show.sections[0].overrides = {*a_move(before->plan, show, 0, 3)};
+  EXPECT_EQ(formations_known(show, reuse), (std::vector<bool>{true, true, true}));
+  const auto after = plan_show(show, Films(3), {}, reuse);
+  ASSERT_TRUE(after) << after.error().message;
+  EXPECT_EQ(after->formations.anew, 0U);
+  EXPECT_EQ(after->plan, plan_show(show, three_films())->plan);
+}
+
 TEST(Replan, AChangeEndsAtTheNextExactFormation) {
   Show show = three_sections();
+  for (Section& section : show.sections) section.planner.model = PlannerModel::hierarchical;
   // Too slow to follow: the film yields, and what is late goes on being late until somebody is exact again.
   show.stage.max_speed_mps = 0.5;
   Stages stages;

@@ -138,6 +138,42 @@ TEST(TimeFlow, KeepsToTheReachAndPutsNobodyOnAnothersCell) {
   }));
 }
 
+/// Far more bids than nodes, so that all labels are raised and lowered at once many times.
+TEST(TimeFlow, IsWithinEpsilonOfItsBoundWhereManyWantTheSamePlaces) {
+  for (const bool placed : {true, false}) {
+    const Reach reach = row_of(60, 7);
+    FlowTask task = random_task(reach, 60, 40, 30, placed, 7);
+    for (std::size_t v = 0; v < task.stand.size(); ++v) task.stand[v] -= v % 60 < 30 ? 4000 : 0;
+    const auto rough = solve(task, {5000});
+    const auto fine = solve(task, {5000, 500, 50, 5});
+    ASSERT_TRUE(rough && fine);
+    EXPECT_LT(fine->cost, rough->cost);
+    EXPECT_LE(fine->cost - fine->bound, std::int64_t{5} * 40 * 61);
+  }
+}
+
+TEST(TimeFlow, IsAsGoodFromWhateverPricesItStarts) {
+  EXPECT_TRUE(rc::check([] {
+    const auto cells = *rc::gen::inRange<std::uint32_t>(2, 30);
+    const auto people = *rc::gen::inRange<std::size_t>(1, cells + 1);
+    const bool placed = *rc::gen::arbitrary<bool>();
+    Reach reach = row_of(cells, *rc::gen::arbitrary<std::uint64_t>());
+    reach.first.push_back(reach.first.back());  // a cell that nobody can stand on
+    const FlowTask task = random_task(reach, cells + 1, people, 8, placed, *rc::gen::arbitrary<std::uint64_t>());
+    const auto prices = *rc::gen::container<std::vector<std::int32_t>>(
+        task.stand.size(), rc::gen::inRange<std::int32_t>(0, *rc::gen::element(2, 60, 2000)));
+    TimeFlowSolver solver(task);
+    solver.start_from(prices);
+    RC_ASSERT(solver.refine(1, {}));
+    const TimeFlow flow = solver.result();
+    RC_ASSERT(flow.bound <= flow.cost);
+    RC_ASSERT(flow.cost - flow.bound <= static_cast<std::int64_t>(4 * people * 9));
+    for (const auto& here : flow.at) RC_ASSERT(std::set<CellIndex>(here.begin(), here.end()).size() == people);
+    const std::vector<std::int32_t> found = solver.prices();
+    RC_ASSERT(std::all_of(found.begin(), found.end(), [](std::int32_t price) { return price >= 0; }));
+  }));
+}
+
 TEST(TimeFlow, IsNothingWhenStopped) {
   const Reach reach = row_of(5, 1);
   const std::atomic<bool> stop{true};
