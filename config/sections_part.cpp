@@ -83,6 +83,7 @@ PlannerOptions read_planner(MappingReader planner) {
   }
   out.layers = planner.integer("layers").value_or(out.layers);
   out.cost = planner.choice("cost").value_or(0) == 0 ? PairingCost::squared : PairingCost::euclidean;
+  out.effort = planner.number("effort").value_or(out.effort);
   if (auto region = planner.mapping("region")) {
     out.region_size = region->integer("size").value_or(out.region_size);
     out.region_variance_m2 = region->quantity("variance").value_or(out.region_variance_m2);

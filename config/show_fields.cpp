@@ -256,6 +256,11 @@ const Listing& planner_listing() {
            .doc = "What is kept small: the sum of squared distances, or of distances.",
            .fallback = "squared",
            .choices = {"squared", "euclidean"}},
+          {.key = "effort",
+           .type = Type::number,
+           .doc = "`joint`: how much walking counts against the drawing; 2 spares people twice as much.",
+           .fallback = "1",
+           .range = {0.01, 100}},
       }};
   return kListing;
 }

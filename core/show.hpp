@@ -89,6 +89,7 @@ struct PlannerOptions {
   int region_size = 60;            ///< most people in a region of the first division (T_n)
   double region_variance_m2 = 30;  ///< largest mean squared distance from a region's anchor (T_v), m^2
   PairingCost cost = PairingCost::squared;
+  double effort = 1;  ///< joint: how much walking counts against the drawing, 0.01..100
 };
 
 /// An instant of a video whose frame is one of the director's formations (KF of Li 2020), exact; what is sampled

@@ -90,6 +90,7 @@ class PictureSection {
                    static_cast<std::size_t>(people_),
                    {},
                    section_speed(show_, section_),
+                   section_.planner.effort,
                    {}};
     if (given()) {
       task.given.resize(keys_.size());

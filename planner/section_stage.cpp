@@ -35,7 +35,11 @@ StageKey section_key(const Show& show, SectionIndex index, const std::string& fi
   hash.add(section.start_count).add(section.duration_counts).add(section.hold_counts);
   hash.add(section.sampling.interval.count()).add(section.sampling.hash).add(section.sampling.snap_to_count);
   const PlannerOptions& options = section.planner;
-  hash.add(options.model).add(options.layers).add(options.region_size).add(options.region_variance_m2);
+  hash.add(options.model)
+      .add(options.layers)
+      .add(options.region_size)
+      .add(options.region_variance_m2)
+      .add(options.effort);
   hash.add(options.cost).add(section.regions.empty());
   for (const TempoChange& change : show.tempo.changes()) hash.add(change.count).add(change.bpm);
   for (const SectionKey& key : section.keys) hash.add(key.count.has_value()).add(key.count.value_or(key.film_s));

@@ -30,6 +30,7 @@ struct JointTask {
   std::size_t people = 0;
   std::vector<CellIndex> first;  ///< where people stand at the first instant; empty: where it is best
   double speed_mps = 0;
+  double effort = 1;  ///< how much walking counts against the drawing
   /// Empty, or for each instant the cells of the formation that the director gave; elsewhere it is worth nothing.
   std::vector<std::vector<CellIndex>> given;
 };

@@ -113,7 +113,7 @@ void Level::weigh_walks(std::size_t k) {
   const auto intervals = static_cast<double>(at_[k + 1] - at_[k]);
   const std::vector<double>& squares = blocks_.squares();
   for (std::size_t index = 0; index < squares.size(); ++index) {
-    const double walk = kWorth * kWalkCost * squares[index] / intervals;
+    const double walk = kWorth * kWalkCost * task_.effort * squares[index] / intervals;
     auto* cost = flow_.intervals[k].cost.data() + kBorders * index;
     cost[kWithin] = whole(walk);
     cost[kOut] = whole(walk + out);

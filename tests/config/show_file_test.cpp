@@ -129,7 +129,7 @@ sections:
     start: count 1.5
     duration: 224 counts
     sampling: {interval: 2 s, hash: 0.2, snap: none}
-    planner: {model: flat, layers: 3, region: {size: 40, variance: 12 m2}, cost: euclidean}
+    planner: {model: flat, layers: 3, region: {size: 40, variance: 12 m2}, cost: euclidean, effort: 2}
 cues:
   - {number: "2.5", section: bow, name: Bow, notes: slowly}
   - {number: "1", section: film, continue: auto-follow, pre_wait: 500 ms, post_wait: 2 s}
@@ -322,7 +322,7 @@ TEST_F(ShowFile, RefusesWrongNumbersInASection) {
   EXPECT_EQ(
       errors_of_section("name: a, from: {video: film.mp4, frames: 9-9, threshold: 300, invert: yes, fit: covr}, "
                         "start: count 0, duration: 0 counts, sampling: {interval: 0 s, hash: 2, snap: beat}, "
-                        "planner: {model: flt, layers: 7, region: {size: 0, variance: -1}}"),
+                        "planner: {model: flt, layers: 7, region: {size: 0, variance: -1}, effort: 0}"),
       "show.yaml:6:47: error: sections[0].from.frames: \"9-9\" has fewer than two frames (the last frame comes after "
       "the first)\n"
       "show.yaml:6:63: error: sections[0].from.threshold: \"300\" is not a threshold (0 to 255, or otsu)\n"
@@ -337,7 +337,8 @@ TEST_F(ShowFile, RefusesWrongNumbersInASection) {
       "show.yaml:6:207: error: sections[0].planner.layers: \"7\" is out of range (1 to 6)\n"
       "show.yaml:6:225: error: sections[0].planner.region.size: \"0\" is out of range (1 to 100000)\n"
       "show.yaml:6:238: error: sections[0].planner.region.variance: \"-1\" is out of range (above 0, at most 1000000 "
-      "m2)\n");
+      "m2)\n"
+      "show.yaml:6:251: error: sections[0].planner.effort: \"0\" is out of range (0.01 to 100)\n");
 }
 
 TEST_F(ShowFile, WantsQuotedAndUniqueCueNumbers) {

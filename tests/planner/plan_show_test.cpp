@@ -143,6 +143,27 @@ TEST(PlanShow, TheJointPlanIsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(plans[0], plans[1]);
 }
 
+TEST(PlanShow, MoreEffortSavesStepsAndLosesDrawing) {
+  Show show = growing_show(70);
+  show.sections[0].planner.model = PlannerModel::joint;
+  std::vector<double> walked_m;
+  for (const double effort : {0.1, 1.0, 100.0}) {
+    show.sections[0].planner.effort = effort;
+    const auto planned = plan_show(show, {growing_film()});
+    ASSERT_TRUE(planned) << planned.error().message;
+    expect_sound(*planned, show);
+    walked_m.push_back(0);
+    for (const auto& track : planned->plan.tracks) {
+      for (std::size_t n = 1; n < track.size(); ++n) {
+        const Grid& grid = show.stage.grid;
+        walked_m.back() += distance(grid.centre(track[n - 1].cell), grid.centre(track[n].cell));
+      }
+    }
+  }
+  EXPECT_LE(walked_m[1], walked_m[0]);
+  EXPECT_LT(walked_m[2], walked_m[1] / 2);
+}
+
 TEST(PlanShow, KeepsOffBlockedCellsAndGoesAroundThem) {
   Show show = growing_show(50);
   show.stage.blocked = cells_in(show.stage.grid, "N6:O15");
