@@ -16,7 +16,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import live
@@ -144,22 +143,19 @@ class Shows(Case):
 
     def test_an_interrupted_planning_ends_at_once_and_writes_nothing(self):
         show = os.path.join(ROOT, "shows/ceremony/show.yaml")
-        for delay_s in (0.05, 0.5, 1.2):
+        for stage in ("decoding", "formations", "pairing"):
             running = subprocess.Popen([PROGRAM, "plan", show, "-o", self.path("show.plan"), "--progress"], stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
             for line in running.stderr:
-                if line.startswith("walks"):
+                if line.startswith(stage):
                     break
-            time.sleep(delay_s)
-            if running.poll() is not None:
-                break  # planned already: a fast machine
             running.send_signal(signal.SIGINT)
             # The promise is 0.1 s; a busy machine may take its time, a planning to its end would take longer.
             out, err = running.communicate(timeout=60)
             self.assertEqual(running.returncode, 130, err)
             self.assertEqual(out, "")
-            self.assertTrue(err.endswith("error: interrupted; nothing was written\n"), err)
-            self.assertNotIn("facts", err)
+            self.assertRegex(err, r"error: interrupted(; nothing was written| while decoding '.*')\n$")
+            self.assertNotIn("validate", err)
             self.assertEqual(os.listdir(self.folder), [])
 
     def test_ceremony_is_planned_and_judged_well(self):
