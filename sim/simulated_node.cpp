@@ -2,7 +2,6 @@
 #include "sim/simulated_node.hpp"
 
 #include <span>
-#include <utility>
 
 #include "core/check.hpp"
 #include "sim/markers/check_sums.hpp"
@@ -16,7 +15,7 @@ SimulatedNode::SimulatedNode(const Node& node, std::string_view bus, NodeModel m
       address_(static_cast<std::uint16_t>(node.address)),
       unique_id_(crc32_ieee(std::span(reinterpret_cast<const std::uint8_t*>(name_.data()), name_.size()))),
       dead_(dead),
-      model_(std::move(model)),
+      model_(model),
       world_(world),
       trace_(trace) {
   FL_CHECK(node.address >= 1 && node.address <= 512);
