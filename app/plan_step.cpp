@@ -144,8 +144,9 @@ Status<> plan_now(Session& session, PlannedShow& out, const std::string& hash, c
       session, [&] { return planner::plan_show(out.loaded.show, *out.films, session.progress(), kept.reuse()); });
   out.planning = clock.now().time_since_epoch();
   session.clear_line();
-  if (!planned) return std::move(planned).error();
+  // Whatever the step says that noticed the stop, the user is told the same.
   if (session.stopped()) return interrupted();
+  if (!planned) return std::move(planned).error();
   out.planned = std::move(planned).value();
   out.planned.plan.show_hash = hash;
   if (kept.had_any()) {
