@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// footlight-decode: turns a video or an image into thresholded pictures on standard output, for config/media.cpp.
+// footlight-decode: turns a video or an image into thresholded pictures on standard output, for config/media.cpp, or a
+// film of lamps into the points of light of its frames, for config/lamp_film.cpp.
 // Codecs are large, old and written in C; a hostile file may kill this process and nothing else. It limits itself
 // before it touches the file: memory, processor time, no file may be written, few may be opened, only local files and
 // listed containers are read.
@@ -27,6 +28,7 @@
 #include <unistd.h>
 
 #include "config/decode_protocol.hpp"
+#include "config/decode_spots.hpp"
 #include "config/otsu.hpp"
 #include "core/film.hpp"
 
@@ -39,12 +41,14 @@ constexpr const char* kCaptureOptions =
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,ogg,gif,mpeg,mpegts";
 
 struct Request {
-  bool video = true;
+  enum class Kind { video, image, lamps };
+  Kind kind = Kind::video;
   std::string path;
   long first = 0;
   long last = -1;       ///< -1: to the end
-  long threshold = -1;  ///< -1: Otsu's
+  long threshold = -1;  ///< -1: Otsu's; of lamps: radius of their light, in millionths of the frame's width
   bool inverted = false;
+  long most_spots = 0;  ///< lamps: in a frame, in the place of `inverted`
   long max_pixels = 0;
   long max_frames = 0;
   long max_seconds = 0;
@@ -54,9 +58,9 @@ struct Request {
 std::optional<Request> request_from(int argc, char** argv) {
   if (argc != 11) return std::nullopt;
   const std::string_view kind = argv[1];
-  if (kind != "video" && kind != "image") return std::nullopt;
+  if (kind != "video" && kind != "image" && kind != "lamps") return std::nullopt;
   Request out;
-  out.video = kind == "video";
+  out.kind = kind == "video" ? Request::Kind::video : kind == "image" ? Request::Kind::image : Request::Kind::lamps;
   out.path = argv[2];
   long inverted = 0;
   const std::array<long*, 8> numbers{&out.first,      &out.last,       &out.threshold,   &inverted,
@@ -67,6 +71,7 @@ std::optional<Request> request_from(int argc, char** argv) {
     if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   }
   out.inverted = inverted != 0;
+  out.most_spots = inverted;
   return out;
 }
 
@@ -87,6 +92,10 @@ class Output {
   void send(const DecodeRecord& record, const Mask& picture) const {
     send(record);
     write_all(picture.words().data(), picture.words().size() * sizeof(std::uint64_t));
+  }
+  void send(const DecodeRecord& record, const std::vector<LightSpot>& spots) const {
+    send(record);
+    write_all(spots.data(), spots.size() * sizeof(LightSpot));
   }
   void end(DecodeStatus status, long count = 0, int width = 0, int height = 0) const {
     DecodeRecord record;
@@ -144,6 +153,8 @@ class FrameReader {
   int width() const { return static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)); }
   int height() const { return static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT)); }
   double fps() const { return capture_.get(cv::CAP_PROP_FPS); }
+  /// Instant of the frame that was read last, as the file says it; films of telephones have no even rate.
+  double time_s() const { return capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3; }
   /// Frames of the file that have been passed so far.
   long passed() const { return passed_; }
   /// Frames of the range that have been read so far.
@@ -234,6 +245,38 @@ void decode_video(const Request& request, const Output& out) {
   out.end(status, status == DecodeStatus::beyond_end ? reader.passed() : reader.taken());
 }
 
+void decode_lamps(const Request& request, const Output& out) {
+  FrameReader reader(request);
+  if (!reader.is_open()) return out.end(DecodeStatus::undecodable);
+  DecodeRecord film;
+  film.kind = DecodeRecord::Kind::film;
+  film.width = reader.width();
+  film.height = reader.height();
+  film.fps = reader.fps();
+  if (film.width <= 0 || film.height <= 0) {
+    return out.end(DecodeStatus::no_pixels, 0, std::max(0, film.width), std::max(0, film.height));
+  }
+  if (static_cast<long>(film.width) * film.height > request.max_pixels) {
+    return out.end(DecodeStatus::too_many_pixels, 0, film.width, film.height);
+  }
+  out.send(film);
+  DecodeRecord record;
+  record.kind = DecodeRecord::Kind::spots;
+  const double radius_px = static_cast<double>(request.threshold) * 1e-6 * film.width;
+  cv::Mat grey;
+  while (reader.read(grey)) {
+    if (!fits(grey, film.width, film.height)) {
+      return out.end(DecodeStatus::size_changes, reader.passed() - 1, grey.cols, grey.rows);
+    }
+    if (reader.taken() > request.max_frames) return out.end(DecodeStatus::too_many_frames);
+    const auto spots = find_spots(grey, radius_px, static_cast<std::size_t>(request.most_spots));
+    record.count = static_cast<std::int64_t>(spots.size());
+    record.fps = reader.time_s();
+    out.send(record, spots);
+  }
+  out.end(range_status(reader, request), reader.taken());
+}
+
 /// Only formats with small, much tested readers; OpenCV alone would try a dozen more.
 bool is_listed_image(const std::string& path) {
   std::array<char, 8> head{};
@@ -304,7 +347,9 @@ int run(int argc, char** argv) {
                        setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kCaptureOptions, 1) == 0;
   if (!bounded) return 3;
   try {
-    request->video ? decode_video(*request, out) : decode_image(*request, out);
+    if (request->kind == Request::Kind::video) decode_video(*request, out);
+    if (request->kind == Request::Kind::image) decode_image(*request, out);
+    if (request->kind == Request::Kind::lamps) decode_lamps(*request, out);
   } catch (const std::bad_alloc&) {
     out.end(DecodeStatus::too_much_memory);
   } catch (const cv::Exception& error) {

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/media.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 
+#include "config/decode_job.hpp"
 #include "config/decode_protocol.hpp"
 #include "config/decoder_process.hpp"
 #include "core/clock.hpp"
@@ -24,15 +20,7 @@
 namespace footlight::config {
 namespace {
 
-struct Job {
-  std::string path;
-  bool video = true;
-  int first = 0;
-  std::optional<int> last;
-  PictureOptions picture;
-  MediaLimits limits;
-  const std::atomic<bool>* stop = nullptr;
-};
+using Job = DecodeJob;
 
 std::vector<std::string> arguments_of(const Job& job) {
   // An absolute path cannot be taken for a protocol.
@@ -46,74 +34,6 @@ std::vector<std::string> arguments_of(const Job& job) {
           std::to_string(job.limits.max_frames),
           std::to_string(static_cast<long>(std::ceil(job.limits.max_seconds))),
           std::to_string(job.limits.max_memory_bytes)};
-}
-
-Error undecodable(const Job& job) {
-  return input_error(
-      job.video ? fmt::format(
-                      "'{}' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, "
-                      "GIF or MPEG, with a video stream)",
-                      job.path)
-                : fmt::format(
-                      "'{}' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM or PGM, of 1 to "
-                      "{} pixels)",
-                      job.path, job.limits.max_pixels));
-}
-
-/// What the child said, in words.
-Error refused_by_child(const Job& job, const DecodeRecord& said) {
-  const std::string range =
-      job.last ? fmt::format("frames {} to {}", job.first, *job.last) : fmt::format("frame {}", job.first);
-  switch (said.status) {
-    case DecodeStatus::ok:
-    case DecodeStatus::undecodable:
-      return undecodable(job);
-    case DecodeStatus::no_pixels:
-      return input_error(fmt::format("'{}' has frames of {} x {} pixels (at least 1 x 1 is needed)", job.path,
-                                     said.width, said.height));
-    case DecodeStatus::too_few_frames:
-      return input_error(
-          fmt::format("'{}' gives {} frame{} here (a video needs at least two; a single picture is an "
-                      "image)",
-                      job.path, said.count, said.count == 1 ? "" : "s"));
-    case DecodeStatus::beyond_end:
-      return input_error(fmt::format("'{}' has {} frames, {} {} beyond its end (frames count from 0, the last is {})",
-                                     job.path, said.count, range, job.last ? "reach" : "is", said.count - 1));
-    case DecodeStatus::too_many_pixels:
-      return input_error(fmt::format("'{}' has frames of {} x {} pixels (at most {} pixels are allowed)", job.path,
-                                     said.width, said.height, job.limits.max_pixels));
-    case DecodeStatus::too_many_frames:
-      return input_error(
-          fmt::format("'{}' gives more than {} frames (choose a shorter range)", job.path, job.limits.max_frames));
-    case DecodeStatus::too_much_memory:
-      return input_error(fmt::format("'{}' needs more than {} MiB to decode (a smaller frame size would do)", job.path,
-                                     job.limits.max_memory_bytes >> 20U));
-    case DecodeStatus::size_changes:
-      return input_error(fmt::format("'{}' changes its frame size at frame {} (all frames of a film have one size)",
-                                     job.path, said.count));
-  }
-  return undecodable(job);
-}
-
-Error died(const Job& job, int status) {
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    return input_error(
-        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
-                    "do)",
-                    job.path, job.limits.max_seconds));
-  }
-  const std::string how = WIFSIGNALED(status)
-                              ? fmt::format("by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                              : fmt::format("with status {}", WEXITSTATUS(status));
-  return input_error(fmt::format("decoding '{}' ended {} (the file is broken, or needs more than {} MiB)", job.path,
-                                 how, job.limits.max_memory_bytes >> 20U));
-}
-
-Error nonsense(const Job& job, std::string_view what) {
-  return input_error(
-      fmt::format("decoding '{}' gave no usable film: {} (footlight and footlight-decode must be of one "
-                  "version and the file whole)",
-                  job.path, what));
 }
 
 /// The child's stream, believed in nothing.
@@ -150,32 +70,8 @@ class FilmReader {
  private:
   [[nodiscard]] std::size_t wanted() const { return static_cast<std::size_t>(*job_.last - job_.first) + 1; }
 
-  static bool known_refusal(const DecodeRecord& record) {
-    return record.kind == DecodeRecord::Kind::end && record.status != DecodeStatus::ok &&
-           record.status <= kLastDecodeStatus;
-  }
-
   std::optional<Error> take(void* data, std::size_t size) {
-    switch (process_.read(data, size, clock_, deadline_, job_.stop)) {
-      case DecoderProcess::Read::all:
-        return std::nullopt;
-      case DecoderProcess::Read::end:
-        return ended();
-      case DecoderProcess::Read::stopped:
-        return Error{ErrorKind::interrupted, fmt::format("interrupted while decoding '{}'", job_.path)};
-      case DecoderProcess::Read::late:
-        break;
-    }
-    return input_error(
-        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
-                    "do)",
-                    job_.path, 2 * job_.limits.max_seconds));
-  }
-
-  Error ended() {
-    const int status = process_.finish(false);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return nonsense(job_, "it ends too early");
-    return died(job_, status);
+    return take_from(process_, data, size, job_, clock_, deadline_);
   }
 
   std::optional<Error> start(const DecodeRecord& record) {
@@ -234,11 +130,7 @@ class FilmReader {
 };
 
 Result<Film> decode(const Job& job) {
-  struct stat about {};
-  if (stat(job.path.c_str(), &about) != 0) {
-    return input_error(fmt::format("cannot read '{}': {}", job.path, std::strerror(errno)));
-  }
-  if (!S_ISREG(about.st_mode)) return input_error(fmt::format("'{}' is not a file", job.path));
+  if (auto there = is_file(job.path); !there) return there.error();
   auto process = DecoderProcess::start(arguments_of(job), job.limits.max_pixels);
   if (!process) return std::move(process).error();
   return FilmReader(job, *process).read();

@@ -82,7 +82,9 @@ const Listing& node_listing() {
           {.key = "channels",
            .type = Type::lamp,
            .doc = "1 to 32 lamps, channel 0 first: cells (`A1`), ranges of cells (`A1:H4`, row by row from A1, "
-                  "blocked cells left out) and `{wearable: W7}`.",
+                  "blocked cells left out), `{wearable: W7}`, and `unused` for a channel without a lamp, or with one "
+                  "whose "
+                  "cell is not known (`footlight commission` finds it).",
            .required = true,
            .listing = &wearable_listing(),
            .list = true},

@@ -260,6 +260,10 @@ class RigReader {
   /// @return how many channels the text stands for
   std::size_t add_cells(MappingReader& reader, const Written& written, Node& node) {
     const Grid& grid = show_.stage.grid;
+    if (written.text == kUnusedChannel) {
+      node.channels.emplace_back();
+      return 1;
+    }
     const auto range = read_cell_range(reader, written, grid);
     if (!range) return 0;
     const bool single = range->first == range->last;

@@ -13,6 +13,9 @@
 
 namespace footlight::config {
 
+/// What stands for a channel without a lamp, or with one whose cell is not known.
+inline constexpr std::string_view kUnusedChannel = "unused";
+
 /// Reads a rig for a show whose stage is known. Errors and warnings go to `diagnostics`; profiles that were read are
 /// added to `files`.
 /// @param performers_known false: wearables are not checked, since the roster itself has errors

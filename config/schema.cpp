@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field.hpp"
+#include "config/rig_file.hpp"
 #include "config/show_file.hpp"
 #include "core/check.hpp"
 
@@ -90,7 +91,7 @@ Json value_of(const Field& field) {
     case Type::mapping:
       return object_of(*field.listing);
     case Type::lamp:
-      return {{"anyOf", Json::array({text_of(kCells), object_of(*field.listing)})}};
+      return {{"anyOf", Json::array({Json{{"const", kUnusedChannel}}, text_of(kCells), object_of(*field.listing)})}};
   }
   FL_CHECK(false);
 }

@@ -109,6 +109,19 @@ TEST_F(RigFile, ReadsBusesAndNodes) {
   EXPECT_TRUE(diagnostics_.empty());
 }
 
+TEST_F(RigFile, AChannelMayBeUnused) {
+  const Rig rig = right(std::string(kBuses) +
+                        "nodes:\n"
+                        "  - {bus: ser, address: 9, channels: [unused, A1:B1, unused]}\n"
+                        "floor: {buses: [can-a]}\n");
+  const auto nine = std::find_if(rig.nodes.begin(), rig.nodes.end(), [](const Node& n) { return n.address == 9; });
+  ASSERT_NE(nine, rig.nodes.end());
+  ASSERT_EQ(nine->channels.size(), 4U);
+  EXPECT_EQ(nine->channels[0].kind, Channel::Kind::unused);
+  EXPECT_EQ(nine->channels[1].cell, show_.stage.grid.index({0, 0}));
+  EXPECT_EQ(nine->channels[3].kind, Channel::Kind::unused);
+}
+
 TEST_F(RigFile, ASupplyIsTheNodesOwnOrItsBuses) {
   const Rig rig = right(
       "rig: 1\nbuses:\n  - {name: a, url: \"sim://can\", supply: left}\n  - {name: b, url: \"sim://can\"}\n"
