@@ -12,6 +12,7 @@
 #include "config/device_profile.hpp"
 #include "config/nearest.hpp"
 #include "config/rig_file.hpp"
+#include "config/transport_map.hpp"
 
 namespace footlight::app {
 namespace {
@@ -63,6 +64,16 @@ Result<Bus> bus_of_url(const DeviceBusChoice& choice) {
   return bus;
 }
 
+Status<> take_transports_of(const DeviceBusChoice& choice, Rig& rig) {
+  if (choice.transports.empty()) return Done{};
+  if (const auto taken = config::take_transports(choice.transports, rig); !taken) {
+    std::string text = taken.error().to_text();
+    text.pop_back();
+    return input_error(text);
+  }
+  return Done{};
+}
+
 Result<BusIndex> bus_named(const Rig& rig, const std::string& name) {
   std::vector<std::string> names;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
@@ -95,6 +106,7 @@ Result<std::unique_ptr<DeviceBus>> DeviceBus::open(Session& session, const Devic
     auto rig = read_rig_of(session, choice.show.empty() ? "show.yaml" : choice.show);
     if (!rig) return std::move(rig).error();
     made->rig_ = std::move(rig).value();
+    if (auto taken = take_transports_of(choice, made->rig_); !taken) return taken.error();
     const auto index = bus_named(made->rig_, choice.bus);
     if (!index) return index.error();
     made->index_ = *index;

@@ -20,6 +20,7 @@ namespace footlight::app {
 struct DeviceBusChoice {
   std::string bus;          ///< its name in the rig of `show`, or a URL
   std::string show;         ///< show file; empty: show.yaml in this folder, where the bus is no URL
+  std::string transports;   ///< transport map: where the rig's buses are today; empty: where the rig says
   std::string profile;      ///< of a URL's Modbus devices; empty: our own marker
   int bits_per_second = 0;  ///< of a URL; 0: as rigs have it
   bool simulated = false;   ///< the rig's nodes in virtual time, whatever its URLs

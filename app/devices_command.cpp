@@ -2,6 +2,7 @@
 #include "app/devices_command.hpp"
 
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,7 @@
 
 #include "app/device_bus.hpp"
 #include "app/devices_report.hpp"
+#include "app/machine_wires.hpp"
 #include "app/simulated_buses.hpp"
 #include "config/nearest.hpp"
 #include "config/quantity.hpp"
@@ -21,10 +23,11 @@ namespace {
 using controller::BusService;
 
 constexpr double kLongestTestS = 86'400;
+constexpr const char* kShowHere = "show.yaml";
 
 struct Options {
   DeviceBusChoice choice;
-  std::string show = "show.yaml";
+  std::string show;  ///< of `list`; empty: show.yaml if it is here, else no rig
   std::string node;
   std::string addresses;
   std::string id;
@@ -55,27 +58,40 @@ Result<std::pair<std::uint16_t, std::uint16_t>> range_of(const std::string& text
   return std::pair(static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(end));
 }
 
-std::vector<std::uint16_t> addresses_of(const DeviceBus& bus) {
+/// Those of --addresses, or else the nodes of the rig, of which there is one at least.
+Result<std::vector<std::uint16_t>> addresses_of(const DeviceBus& bus, const Options& options) {
   std::vector<std::uint16_t> out;
+  if (!options.addresses.empty()) {
+    const auto range = range_of(options.addresses, bus.last_address());
+    if (!range) return range.error();
+    for (int address = range->first; address <= range->second; ++address) {
+      out.push_back(static_cast<std::uint16_t>(address));
+    }
+    return out;
+  }
   for (const drivers::NodeAddress& node : bus.nodes()) out.push_back(node.address);
-  return out;
-}
-
-Error no_nodes(const DeviceBus& bus) {
-  return input_error("the bus \"" + bus.bus().name + "\" has no nodes that are known (give its name and --show SHOW)");
+  if (!out.empty()) return out;
+  return input_error("the bus \"" + bus.bus().name +
+                     "\" has no nodes that are known (say which by --addresses 1-32, or give the bus's name and --show "
+                     "SHOW)");
 }
 
 int list(Session& session, const Options& options) {
-  auto rig = read_rig_of(session, options.show);
-  if (!rig) return session.fail(rig.error());
-  const Rig wires = with_simulated_buses(*rig);
+  Rig rig;
+  if (const std::string show = options.show; !show.empty() || std::filesystem::exists(kShowHere)) {
+    auto read = read_rig_of(session, show.empty() ? kShowHere : show);
+    if (!read) return session.fail(read.error());
+    rig = std::move(read).value();
+  }
+  const Rig wires = with_simulated_buses(rig);
   ManualClock clock;
   sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
   const auto drivers = drivers_on(simulated, wires, Plan{});
   if (!drivers) return session.fail(drivers.error());
   std::vector<std::string> assumptions;
   for (const auto& driver : *drivers) assumptions.push_back(driver->assumption());
-  session.print(session.json ? rig_json(*rig, assumptions) : rig_text(*rig, assumptions));
+  const MachineWires machine = look_at_machine();
+  session.print(session.json ? list_json(rig, assumptions, machine) : list_text(rig, assumptions, machine));
   return 0;
 }
 
@@ -103,7 +119,7 @@ Result<std::pair<std::string, int>> node_place(Session& session, const Options& 
       address >= 1 && address <= 512) {
     return std::pair(options.node.substr(0, slash), address);
   }
-  const std::string show = options.choice.show.empty() ? "show.yaml" : options.choice.show;
+  const std::string show = options.choice.show.empty() ? kShowHere : options.choice.show;
   auto rig = read_rig_of(session, show);
   if (!rig) return std::move(rig).error();
   std::vector<std::string> names;
@@ -172,9 +188,10 @@ int set_address(Session& session, const Options& options) {
 int health(Session& session, const Options& options) {
   auto bus = DeviceBus::open(session, options.choice);
   if (!bus) return session.fail(bus.error());
-  if ((*bus)->nodes().empty()) return session.fail(no_nodes(**bus));
+  const auto addresses = addresses_of(**bus, options);
+  if (!addresses) return session.fail(addresses.error());
   BusService service((*bus)->driver(), (*bus)->nodes());
-  service.ask_health(addresses_of(**bus));
+  service.ask_health(*addresses);
   if (auto done = (*bus)->run(session, service, "health"); !done) return session.fail(done.error());
   session.print(session.json ? health_json(**bus, service.health(), "") : health_text(**bus, service.health()));
   return 0;
@@ -189,9 +206,10 @@ int test(Session& session, const Options& options) {
   }
   auto bus = DeviceBus::open(session, options.choice);
   if (!bus) return session.fail(bus.error());
-  if ((*bus)->nodes().empty()) return session.fail(no_nodes(**bus));
+  const auto addresses = addresses_of(**bus, options);
+  if (!addresses) return session.fail(addresses.error());
   BusService service((*bus)->driver(), (*bus)->nodes());
-  service.test(addresses_of(**bus), seconds(*duration.value));
+  service.test(*addresses, seconds(*duration.value));
   if (auto done = (*bus)->run(session, service, "test"); !done) return session.fail(done.error());
   std::vector<std::string> names;
   for (const auto& node : service.health()) names.push_back((*bus)->name_of(node.address));
@@ -206,6 +224,8 @@ using Work = int (*)(Session&, const Options&);
 
 void add_bus_options(CLI::App& command, Options& options) {
   command.add_option("--show", options.choice.show, "show file whose rig has the bus (default: show.yaml here)");
+  command.add_option("--transport-map", options.choice.transports,
+                     "where the rig's buses are today, as `footlight sim --write-map` writes it");
   command.add_option("--profile", options.choice.profile, "device profile of a Modbus URL");
   command.add_option("--bits-per-second", options.choice.bits_per_second, "speed of a URL")
       ->check(CLI::Range(1200, 4'000'000));
@@ -230,8 +250,13 @@ void add_devices_command(CLI::App& program, Session& session, Chosen& chosen) {
       program.add_subcommand("devices", "Find, identify, readdress and test the markers on their buses");
   devices->require_subcommand(1);
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_work(*devices, session, chosen, options, "list", "The buses and nodes of a rig", list);
-  command->add_option("SHOW", options->show, "the show file")->capture_default_str();
+  CLI::App* command = add_work(*devices, session, chosen, options, "list",
+                               "The buses and nodes of a rig, and the ports of this machine", list);
+  command->add_option("SHOW", options->show, "the show file (default: show.yaml, where there is one)");
+  command->footer(
+      "Also what this machine has for wires: serial ports with their USB data, CAN interfaces, GPIO chips, and which "
+      "bus "
+      "of\nthe rig each carries. Nothing is opened that could disturb a bus.\n");
 
   command = add_work(*devices, session, chosen, options, "scan", "Who answers on a bus", scan);
   command->add_option("BUS", options->choice.bus, "name of a bus of the rig, or a URL")->required();
@@ -258,11 +283,13 @@ void add_devices_command(CLI::App& program, Session& session, Chosen& chosen) {
   add_bus_options(*command, *options);
 
   command = add_work(*devices, session, chosen, options, "health", "Battery, supply, errors and latency", health);
-  command->add_option("BUS", options->choice.bus, "name of a bus of the rig")->required();
+  command->add_option("BUS", options->choice.bus, "name of a bus of the rig, or a URL")->required();
+  command->add_option("--addresses", options->addresses, "only these, as 1-32 (default: the nodes of the rig)");
   add_bus_options(*command, *options);
 
   command = add_work(*devices, session, chosen, options, "test", "How far along the cable nodes answer", test);
-  command->add_option("BUS", options->choice.bus, "name of a bus of the rig")->required();
+  command->add_option("BUS", options->choice.bus, "name of a bus of the rig, or a URL")->required();
+  command->add_option("--addresses", options->addresses, "only these, as 1-32 (default: the nodes of the rig)");
   command->add_option("--duration", options->duration, "as 10 s or 5 min")->capture_default_str();
   add_bus_options(*command, *options);
   command->footer(

@@ -29,10 +29,10 @@ Json identity_json(const drivers::Identity& identity) {
   return out;
 }
 
-std::string said_of(const FoundNode& found) {
+std::string said_of(const FoundNode& found, bool has_rig) {
   switch (found.kind) {
     case FoundNode::Kind::present:
-      return found.expected ? "" : "not in the rig";
+      return found.expected || !has_rig ? "" : "not in the rig";
     case FoundNode::Kind::twofold:
       return found.identities.size() > 1 ? fmt::format("{} devices share this address: set-address one of them by --id",
                                                        found.identities.size())
@@ -69,7 +69,7 @@ double in_ms(Duration duration) { return to_seconds(duration) * 1e3; }
 
 }  // namespace
 
-std::string rig_text(const Rig& rig, const std::vector<std::string>& assumptions) {
+std::string list_text(const Rig& rig, const std::vector<std::string>& assumptions, const MachineWires& wires) {
   std::string text;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const Bus& bus = rig.buses[b];
@@ -83,11 +83,10 @@ std::string rig_text(const Rig& rig, const std::vector<std::string>& assumptions
                           node.supply.empty() ? "" : ", supply " + node.supply);
     }
   }
-  text.pop_back();
-  return text;
+  return text + wires_text(wires, rig);
 }
 
-std::string rig_json(const Rig& rig, const std::vector<std::string>& assumptions) {
+std::string list_json(const Rig& rig, const std::vector<std::string>& assumptions, const MachineWires& wires) {
   Json buses = Json::array();
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const Bus& bus = rig.buses[b];
@@ -107,28 +106,27 @@ std::string rig_json(const Rig& rig, const std::vector<std::string>& assumptions
                      {"assumes", assumptions[b]},
                      {"nodes", std::move(nodes)}});
   }
-  return Json{{"buses", std::move(buses)}}.dump(2);
+  return Json{{"buses", std::move(buses)}, {"machine", wires_json(wires, rig)}}.dump(2);
 }
 
 std::string scan_text(const DeviceBus& bus, const std::vector<FoundNode>& found) {
   std::string text = fmt::format("{:>7}  {:<20} {:<8} {:>7}  {}\n", "address", "node", "is", "heard", "says");
+  const bool has_rig = !bus.nodes().empty();
   int present = 0;
   for (const FoundNode& node : found) {
     present += node.kind == FoundNode::Kind::present ? 1 : 0;
     std::string says;
     for (const auto& identity : node.identities) says += (says.empty() ? "" : " + ") + id_of(identity);
-    const std::string said = said_of(node);
+    const std::string said = said_of(node, has_rig);
     if (!said.empty()) says += (says.empty() ? "" : "; ") + said;
     text +=
         fmt::format("{:>7}  {:<20} {:<8} {:>3}/{:<3}  {}\n", node.address,
                     node.expected ? bus.name_of(node.address) : "-", to_text(node.kind), node.heard, node.rounds, says);
   }
-  return text + fmt::format("{} of {} nodes of the rig answer; {} found",
-                            std::ranges::count_if(found,
-                                                  [](const FoundNode& node) {
-                                                    return node.expected && node.kind == FoundNode::Kind::present;
-                                                  }),
-                            bus.nodes().size(), present);
+  if (!has_rig) return text + fmt::format("{} found", present);
+  const auto answer = std::ranges::count_if(
+      found, [](const FoundNode& node) { return node.expected && node.kind == FoundNode::Kind::present; });
+  return text + fmt::format("{} of {} nodes of the rig answer; {} found", answer, bus.nodes().size(), present);
 }
 
 std::string scan_json(const DeviceBus& bus, const std::vector<FoundNode>& found) {

@@ -5,13 +5,17 @@
 #include <vector>
 
 #include "app/device_bus.hpp"
+#include "app/machine_wires.hpp"
 #include "controller/bus_service.hpp"
 
 namespace footlight::app {
 
-/// Buses of a rig with their nodes and what is assumed of them.
-[[nodiscard]] std::string rig_text(const Rig& rig, const std::vector<std::string>& assumptions);
-[[nodiscard]] std::string rig_json(const Rig& rig, const std::vector<std::string>& assumptions);
+/// Buses of a rig with their nodes and what is assumed of them, and what this machine has to put them on.
+/// @param rig may be empty  @param assumptions one for each bus
+[[nodiscard]] std::string list_text(const Rig& rig, const std::vector<std::string>& assumptions,
+                                    const MachineWires& wires);
+[[nodiscard]] std::string list_json(const Rig& rig, const std::vector<std::string>& assumptions,
+                                    const MachineWires& wires);
 
 /// What a scan has found, by address.
 [[nodiscard]] std::string scan_text(const DeviceBus& bus, const std::vector<controller::FoundNode>& found);

@@ -161,7 +161,7 @@ SendStatus BusService::send(const Question& question) {
 
 Instant BusService::step(Instant now) {
   now_ = now;
-  Instant wish = driver_.step(now, *this);
+  const Instant wish = driver_.step(now, *this);
   while (!finished_) {
     if (under_way_) {
       if (!driver_.ready()) return wish;
@@ -181,8 +181,7 @@ Instant BusService::step(Instant now) {
       asked_at_ = now;
       ++asked_;
       down_since_ = kNever;
-      wish = driver_.step(now, *this);
-      continue;
+      return now;  // a port that blocks has the answer already: it is told at the time that it is then
     }
     if (status == SendStatus::down) {
       if (down_since_ == kNever) down_since_ = now;
@@ -244,9 +243,17 @@ void BusService::conclude_question() {
     return;
   }
   if (question.task == Task::probe || understood > 0) return;
+  if (!refused && question.again + 1 < kAgain) {
+    questions_.push_front(question);
+    ++questions_.front().again;
+    retry_at_ = now_ + kSettle;
+    return;
+  }
   const std::string who = "the node of address " + std::to_string(question.address);
   const std::string task(to_text(question.task));
   if (question.task == Task::health) return;  // its record says so
+  // Perhaps it has moved, and its word for it was lost: what is at the new address tells.
+  if (question.task == Task::set_address && !refused && !counts_after_restart_) return;
   if (refused) {
     fail(who + " refuses to " + task + " (Modbus exception " + std::to_string(answers_.front().detail) + ")");
   } else {
@@ -360,7 +367,8 @@ void BusService::look_after_move() {
     return identity.unique_id == move_.unique_id;
   });
   if (at.heard == 0 || !same) {
-    return fail("the device has taken the address and does not answer there (switch it off and on, then scan)");
+    return fail("the device does not answer at address " + std::to_string(move_.to) +
+                " afterwards (switch it off and on, then scan)");
   }
   finished_ = true;
 }

@@ -41,7 +41,8 @@ class BusService final : private drivers::EventSink {
   BusService(drivers::Driver& driver, const std::vector<drivers::NodeAddress>& nodes);
 
   /// Discovery: two passes over all addresses, then kRounds - 2 questions to those where anything was heard. Bounded:
-  /// so many questions, each with its time-out. The same devices give the same list. One task at a time.
+  /// so many questions, each with its time-out. The same devices give the same list. One task at a time. Outside of
+  /// scans and tests, which count, a question whose answer is lost is asked up to three times.
   static constexpr int kRounds = 6;
   void scan(std::uint16_t first, std::uint16_t last);
   void identify(std::uint16_t address, bool on);
@@ -73,7 +74,7 @@ class BusService final : private drivers::EventSink {
     bool on = false;
     std::uint16_t to = 0;
     std::optional<std::uint32_t> unique_id{};
-    int again = 0;  ///< times that its answer was garbled
+    int again = 0;  ///< times that it was asked before: its answer was garbled, or did not come
   };
   enum class Phase { idle, sweep, rounds, asking, testing, before_move, move, after_move };
 

@@ -72,7 +72,7 @@ std::optional<ModbusReply> TcpBus::poll() { return std::exchange(reply_, std::nu
 void TcpBus::say(int client, std::span<const std::uint8_t> frame) {
   if (frame.size() < kMbap) return;
   for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-    if (nodes_[slot]->address() != frame[kMbap - 1]) continue;
+    if (markers_[slot].address() != frame[kMbap - 1]) continue;
     transmit({slot, nodes_[slot]->epoch(), false, {frame.begin(), frame.end()}, client}, kNodeHears,
              around_.world.now() + network_time(frame.size()));
   }

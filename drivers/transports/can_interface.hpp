@@ -31,6 +31,10 @@ struct CanInterface {
 /// Errors: ErrorKind::device: no such interface, not a CAN interface, or a program built without libnl.
 [[nodiscard]] Result<CanInterface> read_can_interface(const std::string& name);
 
+/// CAN interfaces of this machine, virtual ones too, in the order of their names; it needs no library.
+/// @param folder in which the kernel has a folder for each network interface
+[[nodiscard]] std::vector<std::string> can_interface_names(const std::string& folder = "/sys/class/net");
+
 /// What would go wrong with it in a show, one sentence each, with the command that mends it. Empty: nothing.
 /// @param bits_per_second as the rig says
 [[nodiscard]] std::vector<std::string> objections(const CanInterface& interface, int bits_per_second);

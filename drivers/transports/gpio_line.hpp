@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -41,5 +42,19 @@ struct GpioSettings {
 /// Errors: ErrorKind::device: no such chip, line in use, or a program built without libgpiod.
 [[nodiscard]] Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned offset,
                                                           const GpioSettings& settings);
+
+/// A GPIO chip of this machine.
+struct GpioChip {
+  std::string name;   ///< "gpiochip0"; may be another one after the next start of the machine
+  std::string label;  ///< of the driver; stays
+  unsigned lines = 0;
+};
+
+/// @param path "/dev/gpiochip0"
+/// Errors: ErrorKind::device: not one, not ours to open, or a program built without libgpiod.
+[[nodiscard]] Result<GpioChip> read_gpio_chip(const std::string& path);
+
+/// The paths of what are GPIO chips by their names, in the order of these.
+[[nodiscard]] std::vector<std::string> gpio_chip_paths(const std::string& folder = "/dev");
 
 }  // namespace footlight::drivers

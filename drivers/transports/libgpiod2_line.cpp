@@ -137,4 +137,15 @@ Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned of
   return std::unique_ptr<GpioLine>(std::make_unique<Libgpiod2Line>(std::move(request), offset, input, name));
 }
 
+Result<GpioChip> read_gpio_chip(const std::string& path) {
+  const Chip chip(gpiod_chip_open(path.c_str()));
+  const ChipInfo info(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
+  if (!info) {
+    return device_error("GPIO chip \"" + path + "\": not opened: " + std::generic_category().message(errno) +
+                        " (membership of the group gpio)");
+  }
+  return GpioChip{gpiod_chip_info_get_name(info.get()), gpiod_chip_info_get_label(info.get()),
+                  static_cast<unsigned>(gpiod_chip_info_get_num_lines(info.get()))};
+}
+
 }  // namespace footlight::drivers

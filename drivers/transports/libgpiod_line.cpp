@@ -89,4 +89,13 @@ Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned of
   return std::unique_ptr<GpioLine>(std::make_unique<LibgpiodLine>(std::move(owner), line, input, name));
 }
 
+Result<GpioChip> read_gpio_chip(const std::string& path) {
+  const Chip chip(gpiod_chip_open(path.c_str()));
+  if (!chip) {
+    return device_error("GPIO chip \"" + path + "\": not opened: " + std::generic_category().message(errno) +
+                        " (membership of the group gpio)");
+  }
+  return GpioChip{gpiod_chip_name(chip.get()), gpiod_chip_label(chip.get()), gpiod_chip_num_lines(chip.get())};
+}
+
 }  // namespace footlight::drivers

@@ -9,4 +9,9 @@ Result<std::unique_ptr<GpioLine>> open_gpio(const std::string& chip, unsigned of
                       "\": this program was built without libgpiod (install libgpiod-dev and build again)");
 }
 
+Result<GpioChip> read_gpio_chip(const std::string& path) {
+  return device_error("GPIO chip \"" + path +
+                      "\": this program was built without libgpiod (install libgpiod-dev and build again)");
+}
+
 }  // namespace footlight::drivers

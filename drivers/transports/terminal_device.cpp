@@ -8,7 +8,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "drivers/transports/file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 #include "drivers/transports/serial_device.hpp"
 
 namespace footlight::drivers {

@@ -1,11 +1,10 @@
 """OLA, which most lighting tools build upon, sends DMX through the simulated DMX USB Pro widget of `footlight sim`. Part of run.py.
 olad refuses to run as root, so it runs as nobody there."""
-import json
 import os
 import re
 import subprocess
 
-from live import wait_for
+from stage import wait_for
 
 RIG = """rig: 1
 buses: [{name: ttyUSB0, kind: dmx, url: 'dmx:///dev/nowhere'}]
@@ -13,10 +12,10 @@ nodes: [{bus: ttyUSB0, address: 1, channels: [A1:C1]}]
 """
 
 
-def make_cases(Live):
-    """The test case, over live.py's."""
+def make_cases(Stage):
+    """The test case, over stage.py's."""
 
-    class Ola(Live):
+    class Ola(Stage):
         def unprivileged(self):
             return ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
 

@@ -18,7 +18,10 @@ import sys
 import tempfile
 import unittest
 
+import devices
 import live
+import ola
+import stage
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHARED = os.environ.get("FOOTLIGHT_SHARED", os.path.join(ROOT, "..", "shared"))
@@ -80,8 +83,11 @@ class Case(unittest.TestCase):
         return measured
 
 
-# The show in real time (tests/e2e/live.py).
-Live = live.make_cases(Case, footlight, lambda: PROGRAM)
+# The show in real time, and a technician's work, on real endpoints.
+Stage = stage.make_stage(Case, footlight, lambda: PROGRAM)
+Live = live.make_cases(Stage, footlight, lambda: PROGRAM)
+Devices = devices.make_cases(Stage, footlight)
+Ola = ola.make_cases(Stage)
 
 
 class Docs(Case):

@@ -13,7 +13,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "drivers/transports/file_descriptor.hpp"
+#include "core/file_descriptor.hpp"
 
 namespace footlight::drivers {
 
