@@ -2,30 +2,21 @@
 #include "planner/picture_section.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
-#include "planner/assignment/assignment.hpp"
 #include "planner/formation/cell_shares.hpp"
 #include "planner/formation/formation.hpp"
 #include "planner/formation/placement.hpp"
 #include "planner/formation/sampling.hpp"
-#include "planner/joint/joint_plan.hpp"
+#include "planner/joint_section.hpp"
 #include "planner/parallel.hpp"
-#include "planner/schedule/walks.hpp"
 
 namespace footlight::planner {
 namespace {
 
 /// Key frames are so far apart that everybody could walk this many pitches in between.
 constexpr double kShortestInterval = 2.5;
-/// The same where drawing and walks are planned together: as often as the walk can follow.
-constexpr double kJointInterval = 2.0;
-/// Share of the longest walk that is counted on where blocked cells may be in the way.
-constexpr double kAroundBlocked = 0.7;
-constexpr double kRounding_m = 1e-9;
 
 const PictureOptions& picture_options(const Section& section) {
   if (const auto* video = std::get_if<VideoSource>(&section.from)) return video->picture;
@@ -69,114 +60,27 @@ class PictureSection {
     plan.section.notes = notes();
     describe(plan.section);
     fill_stations(plan);
-    if (jointly_) draw_and_walk(plan);
+    if (jointly_) why_not_ = draw_and_walk({&show_, index_, before_, joint_task()}, plan, progress_);
     if (!why_not_.empty()) plan.section.notes.push_back("planned as `model: hierarchical`: " + why_not_);
     if (progress_.stopped()) return Error{ErrorKind::interrupted, "stopped while drawing formations"};
     return plan;
   }
 
  private:
-  /// Puts the cells of the joint plan in place of the drawings. People begin where it is best for the whole film,
-  /// unless the formation before cannot be left for there in time: then the way there is planned with the film.
-  void draw_and_walk(SectionPlan& plan) {
-    JointTask task{&film_,
-                   &ways_,
-                   &usable_,
-                   reserve_,
-                   placement_.map,
-                   fps_,
-                   keys_.front().time,
-                   keys_,
-                   static_cast<std::size_t>(people_),
-                   {},
-                   section_speed(show_, section_),
-                   section_.planner.effort,
-                   {}};
-    if (given()) {
-      task.given.resize(keys_.size());
-      for (std::size_t n = 0; n < keys_.size(); ++n) {
-        if (keys_[n].given) task.given[n] = plan.stations[n].cells;
-      }
-    }
-    const Duration gap = before_ == nullptr ? Duration::max() : keys_.front().time - before_->depart;
-    if (gap <= Duration::zero()) task.first = before_->cells;  // no time to go anywhere else
-    auto joint = plan_jointly(task, progress_);
-    plan.begin = task.first.empty() ? Begin::where_best : Begin::from_before;
-    if (joint && before_ != nullptr && task.first.empty()) {
-      Station first = plan.stations.front();
-      first.cells = joint->at[0];
-      if (!can_begin(show_, index_, ways_, *before_, first)) {
-        plan.begin = Begin::from_before;
-        joint = plan_from_before(task, plan.stations.front());
-      }
-    }
-    if (!joint) return;
-    if (!keeps_keys(plan.stations, joint->at)) {
-      why_not_ = "the formations of its keys cannot all be reached in time";
-      return;
-    }
-    take(std::move(*joint), plan);
-  }
-
-  /// The film with the time before it, from where people stand then. Who cannot be in the first formation in time and
-  /// clear of the others comes later.
-  std::optional<JointPlan> plan_from_before(JointTask& task, Station& first) const {
-    const Duration gap = keys_.front().time - before_->depart;
-    const double walk_s = kJointInterval * grid_.pitch_m() / task.speed_mps;
-    const auto room = static_cast<int>(kMostNodes / static_cast<std::size_t>(grid_.size()) - keys_.size());
-    const int steps = std::clamp(static_cast<int>(to_seconds(gap) / walk_s), 1, std::max(1, room));
-    std::vector<KeyFrame> instants;
-    for (int step = 0; step < steps; ++step) {
-      instants.push_back({0, 0, before_->depart + seconds(to_seconds(gap) * step / steps)});
-    }
-    const auto extra = static_cast<std::ptrdiff_t>(instants.size());
-    task.instants.insert(task.instants.begin(), instants.begin(), instants.end());
-    if (!task.given.empty()) task.given.insert(task.given.begin(), instants.size(), {});
-    task.first = before_->cells;
-    auto joint = plan_jointly(task, progress_);
-    if (!joint) return std::nullopt;
-    joint->at.erase(joint->at.begin(), joint->at.begin() + extra);
-    const double longest_m = task.speed_mps * to_seconds(gap) - kRounding_m;
-    const Leg leg = settle({&ways_, before_->cells, joint->at[0], longest_m, show_.stage.clearance_m});
-    first.exact = leg.walkable && leg.conflicts.empty();
-    first.follows = true;
-    return joint;
-  }
-
-  void take(JointPlan joint, SectionPlan& plan) const {
-    for_each_index(plan.stations.size(), "formations", progress_, [&](std::size_t n) {
-      Station& station = plan.stations[n];
-      station.cells = std::move(joint.at[n]);
-      station.follows = n > 0 || station.follows;
-      const Mask& picture = film_.frames[static_cast<std::size_t>(keys_[n].frame)];
-      const auto shares = cell_shares(picture, grid_, placement_.map);
-      station.in_picture =
-          static_cast<int>(std::count_if(station.cells.begin(), station.cells.end(), [&](CellIndex cell) {
-            return usable_[cell.at()] != 0 && shares[cell.at()] > 0;
-          }));
-    });
-    plan.section.notes.push_back(
-        fmt::format("drawing and walks are planned together: nobody who keeps the speed limit could save more than "
-                    "{:.2g} intervals outside of the picture a person",
-                    joint.gap / people_));
-  }
-
-  /// Whether the cells of each of the director's key formations are taken.
-  [[nodiscard]] bool keeps_keys(const std::vector<Station>& stations,
-                                const std::vector<std::vector<CellIndex>>& at) const {
-    for (std::size_t n = 0; n < stations.size(); ++n) {
-      if (!keys_[n].given) continue;
-      std::vector<CellIndex> wanted = stations[n].cells;
-      std::vector<CellIndex> taken = at[n];
-      std::sort(wanted.begin(), wanted.end());
-      std::sort(taken.begin(), taken.end());
-      if (wanted != taken) return false;
-    }
-    return true;
-  }
-
-  [[nodiscard]] bool given() const {
-    return std::any_of(keys_.begin(), keys_.end(), [](const KeyFrame& key) { return key.given; });
+  [[nodiscard]] JointTask joint_task() const {
+    return {&film_,
+            &ways_,
+            &usable_,
+            reserve_,
+            placement_.map,
+            fps_,
+            keys_.front().time,
+            keys_,
+            static_cast<std::size_t>(people_),
+            {},
+            section_speed(show_, section_),
+            section_.planner.effort,
+            {}};
   }
 
   /// The director's key frames, ascending; an instant named twice is one.
@@ -398,26 +302,6 @@ class PictureSection {
 };
 
 }  // namespace
-
-bool can_begin(const Show& show, SectionIndex section, const Ways& ways, const Station& before, const Station& first) {
-  const double time_s = to_seconds(first.arrive - before.depart);
-  const double longest_m = section_speed(show, show.sections[section.at()]) * time_s - kRounding_m;
-  if (longest_m <= 0) return false;
-  const Grid& grid = show.stage.grid;
-  std::vector<Point> sources;
-  std::vector<Point> targets;
-  for (const CellIndex cell : before.cells) sources.push_back(grid.centre(cell));
-  for (const CellIndex cell : first.cells) targets.push_back(grid.centre(cell));
-  if (!ways.open()) return assign(sources, targets, WalkCost::squared, kAroundBlocked * longest_m).has_value();
-  // The least squares keep people clear of each other; where a limit forbids them that is not worth trying.
-  const auto best = assign(sources, targets, WalkCost::squared, std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; best && i < sources.size(); ++i) {
-    if (distance(sources[i], targets[best->target_of[i]]) > longest_m) return false;
-  }
-  if (show.stage.clearance_m <= grid.clearance_bound_m()) return true;
-  const Leg leg = settle({&ways, before.cells, first.cells, longest_m, show.stage.clearance_m});
-  return leg.walkable && leg.conflicts.empty();
-}
 
 Result<SectionPlan> plan_pictures(const Show& show, SectionIndex section, const Film& film, const Ways& ways,
                                   const Station* before, const Progress& progress) {

@@ -11,8 +11,4 @@ namespace footlight::planner {
 [[nodiscard]] Result<SectionPlan> plan_pictures(const Show& show, SectionIndex section, const Film& film,
                                                 const Ways& ways, const Station* before, const Progress& progress);
 
-/// Whether people get from the formation before to the first one of a section in time and clear of each other.
-[[nodiscard]] bool can_begin(const Show& show, SectionIndex section, const Ways& ways, const Station& before,
-                             const Station& first);
-
 }  // namespace footlight::planner

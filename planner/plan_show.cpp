@@ -8,85 +8,76 @@
 
 #include <fmt/format.h>
 
-#include "planner/by_hand.hpp"
 #include "planner/casting.hpp"
 #include "planner/parallel.hpp"
-#include "planner/picture_section.hpp"
 #include "planner/plan_notes.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/proof.hpp"
 #include "planner/refusal.hpp"
 #include "planner/schedule/beats.hpp"
 #include "planner/schedule/chain.hpp"
-#include "planner/section_stage.hpp"
 #include "planner/shortest.hpp"
 #include "planner/stand_in.hpp"
+#include "planner/stations.hpp"
 #include "planner/validate.hpp"
+#include "planner/wide_people.hpp"
 
 namespace footlight::planner {
 namespace {
 
 Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 
+Ways ways_of(const Show& show, const WidePeople& wide) {
+  return {show.stage, std::max(show.stage.clearance_m / 2, wide.widest_m())};
+}
+
+bool has_slow_people(const Show& show) {
+  return std::any_of(show.performers.begin(), show.performers.end(),
+                     [](const Performer& performer) { return performer.max_speed_mps > 0; });
+}
+
 class ShowPlanner {
  public:
   ShowPlanner(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress,
               const Reuse& reuse)
-      : show_(show),
-        films_(films),
-        progress_(progress),
-        reuse_(reuse),
-        limits_(show),
-        clearance_m_(show.stage.clearance_m) {
-    for (std::size_t p = 0; p < show.performers.size(); ++p) {
-      const auto radius_m = [&](PerformerIndex who) { return show.performers[who.at()].radius_m; };
-      const PerformerIndex who = PerformerIndex::of(p);
-      if (!widest_ || radius_m(who) > radius_m(*widest_)) {
-        second_ = widest_;
-        widest_ = who;
-      } else if (!second_ || radius_m(who) > radius_m(*second_)) {
-        second_ = who;
-      }
-    }
-    // Neighbours who stand still are a pitch apart: more cannot be planned for, and the judge has the last word.
-    // What walks keep by themselves can be asked of everybody; more is asked of those alone who need it.
-    pair_by_pair_ = show.stage.walk == WalkKind::straight && widest_two_m() > show.stage.grid.clearance_bound_m() &&
-                    widest_two_m() > clearance_m_;
-    if (!pair_by_pair_) clearance_m_ = std::max(clearance_m_, std::min(widest_two_m(), show.stage.grid.pitch_m()));
-  }
+      : show_(show), films_(films), progress_(progress), reuse_(reuse), limits_(show), wide_(show) {}
 
   Result<Planned> run() {
     FL_CHECK(films_.size() == show_.sections.size());
     if (show_.performers.empty()) return input_error(show_.file + ": error: performers: the show has nobody in it");
     if (show_.sections.empty()) return input_error(show_.file + ": error: sections: the show has no section");
-    const Ways ways = ways_of();
-    const bool slow = std::any_of(show_.performers.begin(), show_.performers.end(),
-                                  [](const Performer& performer) { return performer.max_speed_mps > 0; });
+    const Ways ways = ways_of(show_, wide_);
+    const bool slow = has_slow_people(show_);
     if (slow) {
       for (Performer& performer : limits_.performers) performer.max_speed_mps = 0;
     }
     std::optional<Chain> chain;
     for (;;) {
-      if (auto error = collect_stations(ways)) return *error;
+      auto collected = collect_stations({&show_, &limits_, &films_, &ways, &reuse_}, progress_);
+      if (!collected) return collected.error();
+      stations_ = std::move(collected->stations);
+      planned_.plan.sections = std::move(collected->sections);
+      sections_.all += collected->count.all;
+      sections_.anew += collected->count.anew;
       auto casting = casting_of(show_, stations_);
       if (!casting) return casting.error();
-      if (pair_by_pair_) keep_apart_by_radius(show_, *casting);
-      chain = walk_through({&limits_, &ways, &stations_, &*casting, clearance_m_, reuse_.stages, &counts_}, progress_);
+      if (wide_.pair_by_pair()) keep_apart_by_radius(show_, *casting);
+      chain = walk_through({&limits_, &ways, &stations_, &*casting, wide_.clearance_m(), reuse_.stages, &counts_},
+                           progress_);
       if (!chain) return interrupted();
       name_people(*chain);
       if (!slow || give_slow_people_slow_tracks(*chain) || slow_for_all_) break;
       slow_for_all_ = true;
       limits_ = show_;  // the slowest person's limit for everybody
-      stations_.clear();
       planned_ = {};
     }
     write_tracks(*chain);
     stand_in();
     describe();
     write_formations(*chain);
-    const NoteTask notes{&show_, &limits_, &stations_, &*chain, &slot_, clearance_m_};
+    const NoteTask notes{&show_, &limits_, &stations_, &*chain, &slot_, wide_.clearance_m()};
     note_what_gave_way(notes, planned_.plan);
-    note_wide_people();
+    wide_.note(planned_.plan);
     note_steps(notes, planned_.plan);
     if (slow_for_all_) {
       planned_.plan.sections.front().notes.push_back(
@@ -108,8 +99,8 @@ class ShowPlanner {
         planned_.refusal.insert(planned_.refusal.begin(), who.begin(), who.end());
       }
     }
-    if (!planned_.plan.valid && widest_two_m() > show_.stage.grid.pitch_m()) {
-      planned_.refusal.insert(planned_.refusal.begin(), too_wide());
+    if (const auto too_wide = wide_.too_wide(); too_wide && !planned_.plan.valid) {
+      planned_.refusal.insert(planned_.refusal.begin(), *too_wide);
     }
     for (std::size_t s = 0; s < show_.sections.size(); ++s) {
       planned_.shortest.push_back(shortest_duration(limits_, *chain, SectionIndex::of(s), planned_.plan));
@@ -123,139 +114,7 @@ class ShowPlanner {
     return std::move(planned_);
   }
 
-  /// See formations_known.
-  std::vector<bool> known() {
-    if (show_.performers.empty()) return std::vector<bool>(show_.sections.size(), false);
-    const Ways ways = ways_of();
-    Show limits = show_;
-    for (Performer& performer : limits.performers) performer.max_speed_mps = 0;
-    // With limits of people's own everything may have to be planned for the slowest.
-    std::vector<bool> out = known(limits, ways);
-    stations_.clear();
-    const std::vector<bool> slow = known(show_, ways);
-    for (std::size_t s = 0; s < out.size(); ++s) out[s] = out[s] && slow[s];
-    return out;
-  }
-
  private:
-  [[nodiscard]] Ways ways_of() const {
-    return {show_.stage, std::max(show_.stage.clearance_m / 2, show_.performers[widest_->at()].radius_m)};
-  }
-
-  std::optional<Error> collect_stations(const Ways& ways) {
-    draft_videos(ways);
-    if (progress_.stopped()) return interrupted();
-    for (std::size_t s = 0; s < show_.sections.size(); ++s) {
-      auto section = recalled_section(SectionIndex::of(s), ways);
-      if (!section) return section.error();
-      if (auto error = append(SectionIndex::of(s), ways, *section)) return error;
-      planned_.plan.sections.push_back(std::move(section->section));
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Error> append(SectionIndex index, const Ways& ways, SectionPlan& section) {
-    if (auto error = apply_overrides(show_, index, ways, section)) return error;
-    for (Station& station : section.stations) {
-      if (!stations_.empty() && station.arrive <= stations_.back().depart) join(station);
-      stations_.push_back(std::move(station));
-    }
-    return std::nullopt;
-  }
-
-  /// Formations of a section that were planned before, without the film; else anew.
-  Result<SectionPlan> recalled_section(SectionIndex index, const Ways& ways) {
-    const std::size_t s = index.at();
-    ++sections_.all;
-    if (auto plan = recall(limits_, index, ways)) return std::move(*plan);
-    ++sections_.anew;
-    auto section = taken_draft(index, ways);
-    if (!section) section = plan_section(limits_, index, films_[s], ways, before(), progress_);
-    if (*section && has_id(s)) {
-      const Station* from = (*section)->begin == Begin::from_before ? before() : nullptr;
-      reuse_.stages->keep(section_key(limits_, index, reuse_.film_ids[s], from), encode_section(**section));
-    }
-    return std::move(*section);
-  }
-
-  /// Videos planned at the same time, as if nobody had been anywhere before.
-  void draft_videos(const Ways& ways) {
-    drafts_.assign(show_.sections.size(), std::nullopt);
-    std::vector<SectionIndex> videos;
-    for (std::size_t s = 0; s < drafts_.size(); ++s) {
-      const Section& section = limits_.sections[s];
-      if (section.planner.model != PlannerModel::joint || !std::holds_alternative<VideoSource>(section.from)) continue;
-      const bool no_gap = s > 0 && limits_.sections[s - 1].end_count() >= section.start_count;
-      if (films_[s] && !no_gap && !recall_from(limits_, SectionIndex::of(s), nullptr))
-        videos.push_back(SectionIndex::of(s));
-    }
-    if (videos.size() < 2) return;
-    for_each_index(videos.size(), "joint", {{}, progress_.stop}, [&](std::size_t n) {
-      const Progress quiet{{}, progress_.stop};
-      drafts_[videos[n].at()] = plan_section(limits_, videos[n], films_[videos[n].at()], ways, nullptr, quiet);
-    });
-  }
-  std::optional<Result<SectionPlan>> taken_draft(SectionIndex index, const Ways& ways) {
-    auto draft = std::exchange(drafts_[index.at()], std::nullopt);
-    if (draft && *draft && !fits_before(limits_, index, ways, **draft)) return std::nullopt;
-    return draft;
-  }
-
-  /// Whether a plan that was made without the formation before holds with it.
-  [[nodiscard]] bool fits_before(const Show& limits, SectionIndex index, const Ways& ways,
-                                 const SectionPlan& plan) const {
-    return plan.begin != Begin::where_best || before() == nullptr ||
-           can_begin(limits, index, ways, *before(), plan.stations.front());
-  }
-  [[nodiscard]] bool has_id(std::size_t s) const {
-    return reuse_.stages != nullptr && s < reuse_.film_ids.size() && !reuse_.film_ids[s].empty();
-  }
-  [[nodiscard]] const Station* before() const { return stations_.empty() ? nullptr : &stations_.back(); }
-  [[nodiscard]] std::optional<SectionPlan> recall(const Show& limits, SectionIndex index, const Ways& ways) const {
-    auto plan = recall_from(limits, index, nullptr);
-    if (plan && fits_before(limits, index, ways, *plan)) return plan;
-    return before() == nullptr ? std::nullopt : recall_from(limits, index, before());
-  }
-  [[nodiscard]] std::optional<SectionPlan> recall_from(const Show& limits, SectionIndex index,
-                                                       const Station* from) const {
-    if (!has_id(index.at())) return std::nullopt;
-    const auto bytes = reuse_.stages->find(section_key(limits, index, reuse_.film_ids[index.at()], from));
-    if (!bytes) return std::nullopt;
-    StageReader reader(*bytes);
-    SectionPlan plan = decode_section(reader, index);
-    if (!reader.whole()) return std::nullopt;
-    return plan;
-  }
-
-  /// Each section may ask where the one before it leaves people.
-  std::vector<bool> known(const Show& limits, const Ways& ways) {
-    std::vector<bool> out(show_.sections.size(), false);
-    bool all_before = true;
-    for (std::size_t s = 0; s < out.size(); ++s) {
-      const SectionIndex index = SectionIndex::of(s);
-      if (!all_before) stations_.clear();
-      std::optional<SectionPlan> section = recall(limits, index, ways);
-      out[s] = section.has_value();
-      if (!section && all_before && !has_film(show_.sections[s])) {
-        auto listed = plan_section(limits, index, std::nullopt, ways, before(), progress_);
-        if (listed) section = std::move(*listed);
-      }
-      all_before = all_before && section && !append(index, ways, *section);
-    }
-    return out;
-  }
-  static bool has_film(const Section& section) {
-    return std::holds_alternative<VideoSource>(section.from) || std::holds_alternative<ImageSource>(section.from);
-  }
-
-  /// A section that begins when the one before ends has no time to walk: a film takes people as they stand, anything
-  /// else cannot be walked and is refused by what it would take.
-  void join(Station& station) const {
-    if (station.frame) station.exact = false;
-    station.arrive = stations_.back().depart + milliseconds(1);
-    station.depart = std::max(station.depart, station.arrive);
-  }
-
   void describe() {
     Plan& plan = planned_.plan;
     plan.title = show_.title;
@@ -345,7 +204,7 @@ class ShowPlanner {
   /// Everything up to here is planned as if everybody came; from here on the plan has nobody who does not.
   void stand_in() {
     auto& tracks = planned_.plan.tracks;
-    for (const StandIn& one : stand_ins(show_, tracks, widest_two_m() <= clearance_m_)) {
+    for (const StandIn& one : stand_ins(show_, tracks, wide_.widest_two_m() <= wide_.clearance_m())) {
       planned_.plan.sections.front().notes.push_back(stand_in_text(show_, one));
       if (!one.taker) continue;
       std::swap(tracks[one.absent.at()], tracks[one.taker->at()]);
@@ -393,33 +252,6 @@ class ShowPlanner {
     }
   }
 
-  /// No two people need more than this because of their radii.
-  [[nodiscard]] double widest_two_m() const {
-    if (!second_) return 0;
-    return show_.performers[widest_->at()].radius_m + show_.performers[second_->at()].radius_m;
-  }
-  [[nodiscard]] std::string widest_two() const {
-    const Performer& one = show_.performers[widest_->at()];
-    const Performer& two = show_.performers[second_->at()];
-    return fmt::format("performers {} and {} (radius {:g} m and {:g} m)", one.id, two.id, one.radius_m, two.radius_m);
-  }
-  [[nodiscard]] std::string too_wide() const {
-    return section_message(show_, SectionIndex(0),
-                           fmt::format("{} must keep {:g} m, and neighbouring cells are {:g} m apart", widest_two(),
-                                       widest_two_m(), show_.stage.grid.pitch_m()),
-                           fmt::format("smaller radii or a pitch of at least {:g} m", widest_two_m()));
-  }
-  void note_wide_people() {
-    const double bound_m = show_.stage.grid.clearance_bound_m();
-    if (pair_by_pair_ || (clearance_m_ > show_.stage.clearance_m && clearance_m_ > bound_m)) {
-      planned_.plan.sections.front().notes.push_back(
-          fmt::format("{} must keep {:g} m, more than the {:.3f} m that walks on this grid keep by themselves: {}",
-                      widest_two(), widest_two_m(), bound_m,
-                      pair_by_pair_ ? "only people of the same radius take their places, and some may have to wait"
-                                    : "everybody is planned that far apart, and many may have to wait"));
-    }
-  }
-
   const Show& show_;
   const std::vector<std::optional<Film>>& films_;
   const Progress& progress_;
@@ -429,12 +261,8 @@ class ShowPlanner {
   StageCount facts_;
   Show limits_;  ///< with the limits of speed that the walks are planned for
   bool slow_for_all_ = false;
-  double clearance_m_;
-  bool pair_by_pair_ = false;  ///< wide people keep the others' distance by their own radii
-  std::optional<PerformerIndex> widest_;
-  std::optional<PerformerIndex> second_;
+  WidePeople wide_;
   std::vector<Station> stations_;
-  std::vector<std::optional<Result<SectionPlan>>> drafts_;  ///< of videos, until they are taken
   std::vector<std::vector<std::uint32_t>> slot_;
   Planned planned_;
 };
@@ -449,7 +277,17 @@ Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film
 }
 
 std::vector<bool> formations_known(const Show& show, const Reuse& reuse) {
-  return ShowPlanner(show, {}, {}, reuse).known();
+  std::vector<bool> out(show.sections.size(), false);
+  if (show.performers.empty()) return out;
+  const Ways ways = ways_of(show, WidePeople(show));
+  Show limits = show;
+  for (Performer& performer : limits.performers) performer.max_speed_mps = 0;
+  out = sections_known({&show, &limits, nullptr, &ways, &reuse});
+  if (!has_slow_people(show)) return out;
+  // With limits of people's own everything may have to be planned for the slowest.
+  const std::vector<bool> slow = sections_known({&show, &show, nullptr, &ways, &reuse});
+  for (std::size_t s = 0; s < out.size(); ++s) out[s] = out[s] && slow[s];
+  return out;
 }
 
 }  // namespace footlight::planner

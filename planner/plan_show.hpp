@@ -37,15 +37,6 @@ struct Planned {
   StageCount facts;       ///< of a transition, and its proof
 };
 
-/// What an earlier planning leaves for the next. Every stage (the formations of a section, the pairing of a transition,
-/// the walks of an interval, its facts and proof) is known by the hash of all that it depends on: the plan is the one
-/// made without, byte for byte.
-struct Reuse {
-  Stages* stages = nullptr;  ///< in: of earlier plannings; out: of this one alone
-  std::vector<std::string>
-      film_ids;  ///< for each section: names the film's bytes and how they are read; empty: unknown
-};
-
 /// @param films one for each section, absent for explicit cells and where the formations are known
 /// @return ErrorKind::input when there is nothing to plan (more people than cells, positioned), interrupted when told
 /// to stop Complexity: see docs/algorithms/. Deterministic, byte-equal for any number of threads. Thread: reentrant.

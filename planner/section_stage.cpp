@@ -16,6 +16,16 @@ void add_picture(StageHash& hash, const Section& section) {
   hash.add((video != nullptr ? video->picture : image->picture).fit);
 }
 
+/// Where one can walk, and how far apart people keep.
+void add_floor(StageHash& hash, const Show& show) {
+  const Stage& stage = show.stage;
+  hash.add(stage.grid.kind()).add(stage.grid.columns()).add(stage.grid.rows()).add(stage.grid.pitch_m());
+  hash.list(stage.blocked).add(stage.clearance_m);
+  double widest_m = 0;
+  for (const Performer& performer : show.performers) widest_m = std::max(widest_m, performer.radius_m);
+  hash.add(widest_m);
+}
+
 std::int64_t ns(Instant instant) { return instant.time_since_epoch().count(); }
 Instant instant_of(std::int64_t count_ns) { return Instant(Duration(count_ns)); }
 
@@ -26,12 +36,9 @@ StageKey section_key(const Show& show, SectionIndex index, const std::string& fi
   StageHash hash("section");
   hash.add(std::string_view(film_id)).add(std::string_view(section.name)).add(index.value());
   add_picture(hash, section);
-  const Stage& stage = show.stage;
-  hash.add(stage.grid.kind()).add(stage.grid.columns()).add(stage.grid.rows()).add(stage.grid.pitch_m());
-  hash.list(stage.blocked).list(stage.reserve).add(stage.clearance_m).add(show.performers.size());
-  double widest_m = 0;
-  for (const Performer& performer : show.performers) widest_m = std::max(widest_m, performer.radius_m);
-  hash.add(widest_m).add(section_speed(show, section)).add(section.max_speed_mps.value_or(stage.max_speed_mps));
+  add_floor(hash, show);
+  hash.list(show.stage.reserve).add(show.performers.size());
+  hash.add(section_speed(show, section)).add(section.max_speed_mps.value_or(show.stage.max_speed_mps));
   hash.add(section.start_count).add(section.duration_counts).add(section.hold_counts);
   hash.add(section.sampling.interval.count()).add(section.sampling.hash).add(section.sampling.snap_to_count);
   const PlannerOptions& options = section.planner;
@@ -45,6 +52,13 @@ StageKey section_key(const Show& show, SectionIndex index, const std::string& fi
   for (const SectionKey& key : section.keys) hash.add(key.count.has_value()).add(key.count.value_or(key.film_s));
   if (before != nullptr) hash.list(before->cells).add(ns(before->depart));
   return hash.key();
+}
+
+StageKey begin_key(const Show& show, SectionIndex index, const Station& before, const Station& first) {
+  StageHash hash("begin");
+  add_floor(hash, show);
+  hash.add(section_speed(show, show.sections[index.at()])).add((first.arrive - before.depart).count());
+  return hash.list(before.cells).list(first.cells).key();
 }
 
 std::string encode_section(const SectionPlan& plan) {

@@ -14,6 +14,9 @@ namespace footlight::planner {
 [[nodiscard]] StageKey section_key(const Show& show, SectionIndex section, const std::string& film_id,
                                    const Station* before);
 
+/// What it depends on whether people get from the formation before to the first one of a section (`can_begin`).
+[[nodiscard]] StageKey begin_key(const Show& show, SectionIndex section, const Station& before, const Station& first);
+
 [[nodiscard]] std::string encode_section(const SectionPlan& plan);
 /// Fails (StageReader::whole) on anything that encode_section did not write.
 [[nodiscard]] SectionPlan decode_section(StageReader& reader, SectionIndex section);

@@ -169,6 +169,15 @@ class Stages {
   std::unordered_map<StageKey, Entry, KeyHash> entries_;
 };
 
+/// What an earlier planning leaves for the next. Every stage (the formations of a section, the pairing of a transition,
+/// the walks of an interval, its facts and proof) is known by the hash of all that it depends on: the plan is the one
+/// made without, byte for byte.
+struct Reuse {
+  Stages* stages = nullptr;  ///< in: of earlier plannings; out: of this one alone
+  /// For each section: names the film's bytes and how they are read; empty: unknown.
+  std::vector<std::string> film_ids;
+};
+
 /// How many stages there are of a kind, and how many of them were planned anew.
 struct StageCount {
   std::size_t all = 0;

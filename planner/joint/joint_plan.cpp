@@ -44,17 +44,32 @@ class JointPlanner {
   }
 
   std::optional<JointPlan> run() {
+    progress_.tell("joint", 0);
     choose_looks();
     if (!look()) return std::nullopt;
     for (const Scale& scale : kScales) {
-      const std::size_t factor = static_cast<std::size_t>(scale.factor);
-      if (factor > 1 && task_.people < kLeastPeople * factor * factor) continue;
-      if (!improve(scale)) return std::nullopt;
+      if (says_something(scale)) all_work_ += work(scale) * static_cast<double>(refinements(scale, all_work_ == 0));
+    }
+    for (const Scale& scale : kScales) {
+      if (says_something(scale) && !improve(scale)) return std::nullopt;
     }
     return std::move(best_);
   }
 
  private:
+  [[nodiscard]] bool says_something(const Scale& scale) const {
+    const auto factor = static_cast<std::size_t>(scale.factor);
+    return factor == 1 || task_.people >= kLeastPeople * factor * factor;
+  }
+  static int rounds(const Scale& scale, bool first) { return first ? kRoundsAlone : scale.rounds; }
+  static std::size_t refinements(const Scale& scale, bool first) {
+    return (first ? kEpsilonsAtFirst.size() : kEpsilons.size()) + static_cast<std::size_t>(rounds(scale, first)) - 1;
+  }
+  /// Of one refinement, as it grows with blocks and instants.
+  static double work(const Scale& scale) {
+    return 1.0 / (scale.factor * scale.factor * static_cast<double>(scale.stride));
+  }
+
   void choose_looks() {
     const auto frames = task_.film->frames.size();
     const auto intervals = std::count_if(task_.instants.begin(), task_.instants.end(),
@@ -78,7 +93,7 @@ class JointPlanner {
     const double cell_px = grid_.cell_area_m2() * std::abs(task_.map[0] * task_.map[4] - task_.map[1] * task_.map[3]);
     const int most = static_cast<int>(people_);
     const int least = std::max(0, most - static_cast<int>(task_.reserve.size()));
-    return for_each_index(looks_.size(), "joint", progress_, [&](std::size_t n) {
+    return for_each_index(looks_.size(), "joint", {{}, progress_.stop}, [&](std::size_t n) {
       Look& look = looks_[n];
       const Mask& picture = task_.film->frames[look.frame];
       const auto shares = cell_shares(picture, grid_, task_.map);
@@ -101,12 +116,11 @@ class JointPlanner {
   bool improve(const Scale& scale) {
     auto level = std::make_unique<Level>(task_, looks_, waits_, scale.factor, scale.stride, worth_);
     const bool first = coarser_ == nullptr;
-    const int rounds = first ? kRoundsAlone : scale.rounds;
     double least = 0;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds(scale, first); ++round) {
       level->weigh();
       if (round == 0 && !first) level->start_like(*coarser_);
-      if (!refine(*level, round, first)) return false;
+      if (!refine(*level, round, first, work(scale))) return false;
       TimeFlow found = level->result();
       const double loss = level->judge(
           found, [&](std::size_t n, double people, double covered) { set_weight(looks_[n], people, covered); });
@@ -114,16 +128,17 @@ class JointPlanner {
         least = loss;
         best_ = JointPlan{std::move(found.at), static_cast<double>(found.cost - found.bound) / kWorth};
       }
-      if (scale.factor == 1) progress_.tell("joint", (round + 1.0) / rounds);
     }
     coarser_ = std::move(level);
     return true;
   }
 
-  bool refine(Level& level, int round, bool first) const {
+  bool refine(Level& level, int round, bool first, double work) {
     const std::span<const int> all = first ? std::span<const int>(kEpsilonsAtFirst) : std::span<const int>(kEpsilons);
     for (const int epsilon : round == 0 ? all : all.last(1)) {
       if (!level.refine(epsilon, {{}, progress_.stop})) return false;
+      done_work_ += work;
+      progress_.tell("joint", std::min(1.0, done_work_ / all_work_));
     }
     return true;
   }
@@ -135,6 +150,8 @@ class JointPlanner {
   CellFlags waits_;
   std::vector<Look> looks_;
   double worth_ = 1;
+  double all_work_ = 0;
+  double done_work_ = 0;
   std::unique_ptr<Level> coarser_;
   std::optional<JointPlan> best_;
 };

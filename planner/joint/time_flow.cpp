@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "core/check.hpp"
-#include "planner/joint/time_flow_marks.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -34,6 +33,7 @@ TimeFlowSolver::TimeFlowSolver(const FlowTask& task)
 bool TimeFlowSolver::refine(std::int32_t epsilon, const Progress& progress) {
   FL_CHECK(task_.stand.size() == into_.size() && epsilon > 0);
   epsilon_ = epsilon;
+  set_steps();
   look_back();
   const std::size_t pause = kBidsPerRaise * from_.size();
   for (std::size_t n = 0; enter(); ++n) {
@@ -148,29 +148,25 @@ TimeFlowSolver::Offer TimeFlowSolver::onward(std::uint32_t at) const {
   const Reach& reach = *interval.reach;
   const std::uint32_t c = at - k * cells_;
   const std::int32_t* into = into_.data() + node(k + 1, 0);
-  Offer offer{kFar, kFar, 0, 0};
-  std::uint32_t best_walk = 0;
+  const std::uint32_t* to = reach.to.data();
+  const std::uint8_t* kind = reach.kind.data();
+  // Costs with the numbers of the walks behind them: the two least are found without a branch.
+  constexpr std::int64_t kNothing = std::int64_t{kFar} << 32U;
+  std::int64_t best = kNothing;
+  std::int64_t second = kNothing;
   for (std::uint32_t a = reach.first[c]; a < reach.first[c + 1]; ++a) {
-    const std::int32_t cost = interval.cost[reach.kind[a]] + into[reach.to[a]];
-    if (cost < offer.best) {
-      offer.second = offer.best;
-      offer.best = cost;
-      best_walk = a;
-    } else {
-      offer.second = std::min(offer.second, cost);
-    }
+    const std::int64_t cost = (std::int64_t{interval.cost[kind[a]] + into[to[a]]} << 32U) | a;
+    second = std::min(second, std::max(best, cost));
+    best = std::min(best, cost);
   }
+  Offer offer{static_cast<std::int32_t>(best >> 32U), static_cast<std::int32_t>(second >> 32U), 0, 0};
   if (offer.best == kFar) return offer;
-  offer.node = node(k + 1, reach.to[best_walk]);
-  offer.kind = reach.kind[best_walk];
+  const auto best_walk = static_cast<std::uint32_t>(best & 0xFFFFFFFF);
+  offer.node = node(k + 1, to[best_walk]);
+  offer.kind = kind[best_walk];
   offer.best += task_.stand[at];
   if (offer.second < kFar) offer.second += task_.stand[at];
   return offer;
-}
-
-/// Whether somebody is here who has yet to choose where to go.
-bool TimeFlowSolver::is_bidder(std::uint32_t at) const {
-  return from_[at] != kEmpty && next_[at] == kNone && at < node(last_, 0);
 }
 
 /// Somebody who stands at a node chooses where to go next, or gives the node up.

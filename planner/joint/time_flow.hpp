@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/index.hpp"
+#include "planner/joint/time_flow_marks.hpp"
 #include "planner/progress.hpp"
 
 namespace footlight::planner {
@@ -96,7 +97,10 @@ class TimeFlowSolver {
   void give_up(std::uint32_t at, std::int32_t label);
   [[nodiscard]] std::vector<std::uint32_t> starts() const;
   [[nodiscard]] std::int64_t bound() const;
-  [[nodiscard]] bool is_bidder(std::uint32_t at) const;
+  /// Whether somebody is here who has yet to choose where to go.
+  [[nodiscard]] bool is_bidder(std::uint32_t at) const {
+    return from_[at] != kEmpty && next_[at] == kNone && at < node(last_, 0);
+  }
 
   // Labels set at once: time_flow_labels.cpp.
   void raise_labels();
@@ -106,7 +110,9 @@ class TimeFlowSolver {
   std::int32_t settle_distances(std::size_t wanted, Settle settle);
   void move_labels(std::int32_t furthest, std::int32_t step);
   void offer_starts();
+  void set_steps();
   [[nodiscard]] std::int32_t steps(std::int32_t cost) const;
+  [[nodiscard]] std::int32_t epsilons(std::int32_t cost) const;  ///< how often the epsilon is in it
   void put(std::uint32_t point, std::int32_t distance);
   void reach_in(std::uint32_t at, std::int32_t distance) { put(2 * at, distance); }
   void reach_out(std::uint32_t at, std::int32_t distance) { put(2 * at + 1, distance); }
@@ -119,6 +125,8 @@ class TimeFlowSolver {
   std::uint32_t last_;
   bool free_start_;
   std::int32_t epsilon_ = 0;
+  std::uint64_t reciprocal_ = 0;  ///< of the epsilon, times 2^shift_
+  unsigned shift_ = 0;
   std::vector<std::int32_t> into_;   ///< for each node, cost to the end with the price of the node
   std::vector<std::int32_t> out_;    ///< without it
   std::vector<std::uint32_t> from_;  ///< for each node, the node before, or a mark

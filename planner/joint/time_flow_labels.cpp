@@ -3,9 +3,9 @@
 // implementation of a scaling minimum-cost flow algorithm, section 5: price updates). Every node is two points, the way
 // into it and the way out of it; ways that are taken can be taken back.
 #include <algorithm>
+#include <bit>
 
 #include "planner/joint/time_flow.hpp"
-#include "planner/joint/time_flow_marks.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -15,11 +15,24 @@ constexpr std::int32_t kFurthest = 4096;
 
 }  // namespace
 
+/// What divides by the epsilon without a division. The reciprocal is too large by less than 1, so that the quotient of
+/// a whole cost below 2^31 is too large by less than 2^31 / 2^shift_ < 1 / epsilon: too little to reach the next
+/// number.
+void TimeFlowSolver::set_steps() {
+  shift_ = 31U + static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(epsilon_)));
+  const auto divisor = static_cast<std::uint64_t>(epsilon_);
+  reciprocal_ = ((std::uint64_t{1} << shift_) + divisor - 1) / divisor;
+}
+
 /// Length of a way that costs `cost` more than the labels say, epsilons: with labels changed by the distances it costs
 /// between -1 and 0 more, on a shortest way.
-std::int32_t TimeFlowSolver::steps(std::int32_t cost) const { return cost < 0 ? 0 : cost / epsilon_ + 1; }
+inline std::int32_t TimeFlowSolver::steps(std::int32_t cost) const { return cost < 0 ? 0 : epsilons(cost) + 1; }
 
-void TimeFlowSolver::put(std::uint32_t point, std::int32_t distance) {
+inline std::int32_t TimeFlowSolver::epsilons(std::int32_t cost) const {
+  return static_cast<std::int32_t>((static_cast<std::uint64_t>(cost) * reciprocal_) >> shift_);
+}
+
+inline void TimeFlowSolver::put(std::uint32_t point, std::int32_t distance) {
   if (distance >= distance_[point]) return;
   distance_[point] = distance;
   if (static_cast<std::size_t>(distance) >= queue_.size()) queue_.resize(static_cast<std::size_t>(distance) + 1);
@@ -88,7 +101,7 @@ void TimeFlowSolver::ways_into(std::uint32_t point, std::int32_t distance) {
     if (to != kNone) reach_in(to, distance + steps(out_[at] - task_.stand[at] - walk_to(to) - into_[to]));
     return;
   }
-  if (from_[at] != kEmpty) reach_out(at, distance + std::max(0, into_[at] - out_[at]) / epsilon_);
+  if (from_[at] != kEmpty) reach_out(at, distance + epsilons(std::max(0, into_[at] - out_[at])));
   if (at < cells_) {
     if (free_start_ && from_[at] != kSource) reach_source(distance + steps(into_[at] - start_label_));
     return;
@@ -97,10 +110,14 @@ void TimeFlowSolver::ways_into(std::uint32_t point, std::int32_t distance) {
   const FlowInterval& interval = task_.intervals[k];
   const Reach& reach = *interval.reach;
   const std::uint32_t c = at - (k + 1) * cells_;
+  const std::int32_t* known = distance_.data();
+  const std::int32_t* stand = task_.stand.data();
+  const std::int32_t* out = out_.data();
+  const std::int32_t into = into_[at];
   for (std::uint32_t a = reach.first[c]; a < reach.first[c + 1]; ++a) {
     const std::uint32_t u = node(k, reach.to[a]);
-    if (distance_[2 * u + 1] <= distance) continue;
-    reach_out(u, distance + steps(task_.stand[u] + interval.cost[reach.mirror[reach.kind[a]]] + into_[at] - out_[u]));
+    if (known[2 * u + 1] <= distance) continue;
+    reach_out(u, distance + steps(stand[u] + interval.cost[reach.mirror[reach.kind[a]]] + into - out[u]));
   }
 }
 
@@ -135,7 +152,7 @@ void TimeFlowSolver::ways_out_of(std::uint32_t point, std::int32_t distance) {
     if (!is_node(before)) return;
     return reach_out(before, distance + steps(out_[before] - task_.stand[before] - walk_to(at) - into_[at]));
   }
-  if (from_[at] != kEmpty) reach_in(at, distance + std::max(0, into_[at] - out_[at]) / epsilon_);
+  if (from_[at] != kEmpty) reach_in(at, distance + epsilons(std::max(0, into_[at] - out_[at])));
   const std::uint32_t k = at / cells_;
   if (k == last_) return;
   const FlowInterval& interval = task_.intervals[k];

@@ -13,26 +13,10 @@
 namespace footlight::planner {
 namespace {
 
-using Films = std::vector<std::optional<Film>>;
+using test::Films;
+using test::three_films;
+using test::three_sections;
 
-/// An image, a film and an image, a few people in the wings.
-Show three_sections(int people = 44) {
-  Show show = test::show_with(people, GridKind::square, 24, 16);
-  show.stage.reserve = test::cells_in(show.stage.grid, "A1:B16");
-  Section first = test::section_of("first", ImageSource{"a.png", {}}, 1, 0, 4, 11);
-  Section film = test::section_of("film", test::video(), 45, 40, 0, 12);
-  film.sampling.interval = milliseconds(3000);
-  Section last = test::section_of("last", ImageSource{"b.png", {}}, 130, 0, 4, 13);
-  show.sections = {first, film, last};
-  return show;
-}
-Films three_films() {
-  const Mask start = tests::disc(80, 60, 30, 30, 20);
-  const Mask end = tests::mask_where(80, 60, [](int x, int y) { return x > 20 && x < 60 && y > 20 && y < 45; });
-  return {tests::film_of(1, [&](int) { return start; }),
-          tests::film_of(30, [](int f) { return tests::disc(80, 60, 25 + f, 30, 18); }),
-          tests::film_of(1, [&](int) { return end; })};
-}
 std::vector<std::string> ids() { return {"a", "film", "b"}; }
 
 /// Moves one person of a formation to the nearest free cell.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,5 +47,26 @@ inline Section section_of(const char* name, Source from, double start, double du
 }
 
 inline VideoSource video() { return {"film.mp4", 0, std::nullopt, {}}; }
+
+using Films = std::vector<std::optional<Film>>;
+
+/// An image, a film and an image, a few people in the wings.
+inline Show three_sections(int people = 44, GridKind kind = GridKind::square) {
+  Show show = show_with(people, kind, 24, 16);
+  show.stage.reserve = cells_in(show.stage.grid, "A1:B16");
+  Section first = section_of("first", ImageSource{"a.png", {}}, 1, 0, 4, 11);
+  Section film = section_of("film", video(), 45, 40, 0, 12);
+  film.sampling.interval = milliseconds(3000);
+  Section last = section_of("last", ImageSource{"b.png", {}}, 130, 0, 4, 13);
+  show.sections = {first, film, last};
+  return show;
+}
+inline Films three_films() {
+  const Mask start = tests::disc(80, 60, 30, 30, 20);
+  const Mask end = tests::mask_where(80, 60, [](int x, int y) { return x > 20 && x < 60 && y > 20 && y < 45; });
+  return {tests::film_of(1, [&](int) { return start; }),
+          tests::film_of(30, [](int f) { return tests::disc(80, 60, 25 + f, 30, 18); }),
+          tests::film_of(1, [&](int) { return end; })};
+}
 
 }  // namespace footlight::planner::test

@@ -14,27 +14,14 @@
 namespace footlight::planner {
 namespace {
 
-using Films = std::vector<std::optional<Film>>;
+using test::Films;
+using test::three_films;
 
-/// An image, a film and an image, a few people in the wings.
 Show over_cells(GridKind kind, int people) {
-  Show show = test::show_with(people, kind, 24, 16);
+  Show show = test::three_sections(people, kind);
   show.stage.walk = WalkKind::cells;
-  show.stage.reserve = test::cells_in(show.stage.grid, "A1:B16");
   show.stage.max_speed_mps = 2;
-  Section first = test::section_of("first", ImageSource{"a.png", {}}, 1, 0, 4, 11);
-  Section film = test::section_of("film", test::video(), 45, 40, 0, 12);
-  film.sampling.interval = milliseconds(3000);
-  Section last = test::section_of("last", ImageSource{"b.png", {}}, 130, 0, 4, 13);
-  show.sections = {first, film, last};
   return show;
-}
-Films films() {
-  const Mask start = tests::disc(80, 60, 30, 30, 20);
-  const Mask end = tests::mask_where(80, 60, [](int x, int y) { return x > 20 && x < 60 && y > 20 && y < 45; });
-  return {tests::film_of(1, [&](int) { return start; }),
-          tests::film_of(30, [](int f) { return tests::disc(80, 60, 25 + f, 30, 18); }),
-          tests::film_of(1, [&](int) { return end; })};
 }
 
 /// Everybody goes to a neighbouring cell or stays, from whole count to whole count.
@@ -62,7 +49,7 @@ TEST(OverCells, EverybodyStepsOnWholeCountsAndThePlanIsValid) {
       show.stage.blocked = test::cells_in(show.stage.grid, "L7:M8");
     }
     if (rng.below(4) == 0) show.stage.max_speed_mps = 1.2;  // two counts a step
-    const auto planned = plan_show(show, films());
+    const auto planned = plan_show(show, three_films());
     RC_ASSERT(planned.has_value());
     RC_ASSERT(planned->refusal.empty());
     RC_ASSERT(planned->plan.valid);
@@ -80,7 +67,7 @@ TEST(OverCells, APlanMadeAgainFromItsStagesIsTheSame) {
   const Show show = over_cells(GridKind::square, 44);
   Stages stages;
   const Reuse reuse{&stages, {"a", "film", "b"}};
-  const auto first = plan_show(show, films(), {}, reuse);
+  const auto first = plan_show(show, three_films(), {}, reuse);
   ASSERT_TRUE(first) << first.error().message;
   const auto second = plan_show(show, Films(3), {}, reuse);
   ASSERT_TRUE(second) << second.error().message;
@@ -92,7 +79,7 @@ TEST(OverCells, ASectionThatLeavesTooFewCountsIsRefusedByHowManyAreMissing) {
   Show show = over_cells(GridKind::square, 30);
   show.sections.erase(show.sections.begin() + 1);
   show.sections[1].start_count = 13;  // eight counts after the hold of the first one
-  Films two = films();
+  Films two = three_films();
   two.erase(two.begin() + 1);
   const std::vector<PictureOptions> pictures{{Fit::contain, {}, {}}, {Fit::contain, {}, {}}};
   for (std::size_t s = 0; s < 2; ++s) std::get<ImageSource>(show.sections[s].from).picture = pictures[s];
@@ -135,7 +122,7 @@ TEST(OverCells, NamedPeopleWhoStandInEachOthersWayStepAside) {
 TEST(OverCells, WhereACountIsTooShortAStepTakesTwoAndTheNotesSaySo) {
   Show show = over_cells(GridKind::square, 30);
   show.stage.max_speed_mps = 1.4;
-  const auto planned = plan_show(show, films());
+  const auto planned = plan_show(show, three_films());
   ASSERT_TRUE(planned);
   const auto& notes = planned->plan.sections[1].notes;
   EXPECT_TRUE(
