@@ -123,6 +123,44 @@ std::optional<int> read_meter(MappingReader& music) {
   return std::nullopt;
 }
 
+struct MeterEntry {
+  MappingReader reader;
+  MeterChange change;
+};
+
+/// The items of `changes`; false after an error.
+bool read_changes(MappingReader& music, std::vector<TempoChange>& changes, std::vector<MeterEntry>& meters) {
+  double last = 0;
+  for (MappingReader& reader : music.mappings("changes")) {
+    const auto at = reader.quantity("at");
+    const auto bpm = reader.number("tempo");
+    const auto beats = read_meter(reader);
+    if (!at || (reader.has("tempo") && !bpm) || (reader.has("meter") && !beats)) return false;
+    if (last == 0 && *at != 1) {
+      reader.error("at", "the first tempo begins at count " + plain(*at), "it begins at count 1");
+      return false;
+    }
+    if (last == 0 && (!bpm || beats)) {
+      reader.error(reader.position(), reader.path(), bpm ? "a meter at count 1" : "no tempo at count 1",
+                   "the first change gives the first tempo; the first meter is music.meter");
+      return false;
+    }
+    if (*at <= last) {
+      reader.error("at", "count " + plain(*at) + " does not come after count " + plain(last),
+                   "the counts increase down the list");
+      return false;
+    }
+    if (!bpm && !beats) {
+      reader.error(reader.position(), reader.path(), "nothing changes", "give a tempo or a meter");
+      return false;
+    }
+    last = *at;
+    if (bpm) changes.push_back({*at, *bpm});
+    if (beats) meters.push_back({reader, {*at, *beats}});
+  }
+  return true;
+}
+
 }  // namespace
 
 void read_cues(ShowReading& show, MappingReader& root) {
@@ -165,34 +203,33 @@ void read_looks(ShowReading& show, MappingReader looks) {
 
 void read_music(ShowReading& show, MappingReader music) {
   const int beats = read_meter(music).value_or(4);
-  if (!music.has("changes")) {
-    show.show().tempo = TempoMap(music.number("tempo").value_or(120), beats);
+  const double pickup = music.quantity("pickup").value_or(0);
+  if (pickup >= beats) {
+    music.error("pickup", "a pick-up of " + plain(pickup) + " counts is no shorter than a measure",
+                "fewer than " + std::to_string(beats) + " counts");
     return;
   }
-  if (music.has("tempo")) {
-    music.error(music.key_position("tempo"), music.path("tempo"), "does not go with \"changes\"",
-                "give one tempo or a list of changes");
-  }
   std::vector<TempoChange> changes;
-  for (MappingReader& reader : music.mappings("changes")) {
-    const auto at = reader.quantity("at");
-    const auto bpm = reader.number("tempo");
-    if (!at || !bpm) return;
-    if (changes.empty() && *at != 1) {
-      return reader.error("at", "the first tempo begins at count " + plain(*at), "it begins at count 1");
+  std::vector<MeterEntry> meters;
+  if (!music.has("changes")) {
+    changes.push_back({1, music.number("tempo").value_or(120)});
+  } else {
+    if (music.has("tempo")) {
+      music.error(music.key_position("tempo"), music.path("tempo"), "does not go with \"changes\"",
+                  "give one tempo or a list of changes");
     }
-    if (!changes.empty() && *at <= changes.back().count) {
-      return reader.error("at", "count " + plain(*at) + " does not come after count " + plain(changes.back().count),
-                          "the counts increase down the list");
-    }
-    changes.push_back({*at, *bpm});
+    if (!read_changes(music, changes, meters)) return;
   }
-  auto map = TempoMap::from(std::move(changes), beats);
-  if (map) {
-    show.show().tempo = std::move(*map);
-  } else if (!music.reading().diagnostics.has_errors()) {
-    music.error("changes", map.error().message);
+  auto map = TempoMap::from(std::move(changes), beats, pickup);
+  if (!map) {
+    if (!music.reading().diagnostics.has_errors()) music.error("changes", map.error().message);
+    return;
   }
+  for (MeterEntry& entry : meters) {
+    const auto changed = map->change_meter(entry.change.count, entry.change.beats);
+    if (!changed) return entry.reader.error("meter", changed.error().message, "a meter changes where a measure begins");
+  }
+  show.show().tempo = std::move(*map);
 }
 
 }  // namespace footlight::config

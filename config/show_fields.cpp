@@ -121,17 +121,24 @@ const Listing& performers_listing() {
 }
 
 const Listing& tempo_listing() {
-  static const Listing kListing{
-      "music.changes[]",
-      "A tempo from a count on.",
-      {
-          {.key = "at",
-           .type = Type::at_count,
-           .doc = "Counts increase down the list; the first is count 1.",
-           .required = true,
-           .range = {1, kMost}},
-          {.key = "tempo", .type = Type::number, .doc = "Counts a minute.", .required = true, .range = {1, 1000}},
-      }};
+  static const Listing kListing{"music.changes[]",
+                                "A tempo or a meter from a count on.",
+                                {
+                                    {.key = "at",
+                                     .type = Type::at_count,
+                                     .doc = "Counts increase down the list; the first is count 1.",
+                                     .required = true,
+                                     .range = {1, kMost}},
+                                    {.key = "tempo",
+                                     .type = Type::number,
+                                     .doc = "Counts a minute; required at count 1.",
+                                     .otherwise = "as before",
+                                     .range = {1, 1000}},
+                                    {.key = "meter",
+                                     .type = Type::meter,
+                                     .doc = "Counts a measure from here on, where a measure begins; not at count 1.",
+                                     .otherwise = "as before"},
+                                }};
   return kListing;
 }
 
@@ -154,6 +161,11 @@ const Listing& music_listing() {
                                      .type = Type::meter,
                                      .doc = "Counts a measure (the upper number), for measure and beat in print.",
                                      .fallback = "4/4"},
+                                    {.key = "pickup",
+                                     .type = Type::counts,
+                                     .doc = "Counts before measure 1 begins, fewer than a measure has.",
+                                     .fallback = "0 counts",
+                                     .range = {0, 64}},
                                 }};
   return kListing;
 }

@@ -19,12 +19,15 @@ std::vector<double> times_of(const std::vector<TempoChange>& changes) {
 }  // namespace
 
 TempoMap::TempoMap(double bpm, int beats_per_measure)
-    : changes_{{1, bpm}}, change_s_{0.0}, beats_per_measure_(beats_per_measure) {
+    : changes_{{1, bpm}}, change_s_{0.0}, meters_{{1, beats_per_measure}}, meter_measure_{1.0} {
   FL_CHECK(bpm > 0 && beats_per_measure >= 1);
 }
 
-Result<TempoMap> TempoMap::from(std::vector<TempoChange> changes, int beats_per_measure) {
+Result<TempoMap> TempoMap::from(std::vector<TempoChange> changes, int beats_per_measure, double pickup_counts) {
   if (beats_per_measure < 1) return input_error("a measure has at least one beat");
+  if (!(pickup_counts >= 0 && pickup_counts < beats_per_measure)) {
+    return input_error("a pick-up is shorter than a measure");
+  }
   if (changes.empty() || changes.front().count != 1) return input_error("the first tempo begins at count 1");
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (!(changes[i].bpm >= 1 && changes[i].bpm <= 1000))
@@ -34,7 +37,25 @@ Result<TempoMap> TempoMap::from(std::vector<TempoChange> changes, int beats_per_
   TempoMap map(changes.front().bpm, beats_per_measure);
   map.change_s_ = times_of(changes);
   map.changes_ = std::move(changes);
+  map.meters_.front().count = 1 + pickup_counts;
   return map;
+}
+
+Status<> TempoMap::change_meter(double count, int beats) {
+  FL_CHECK(beats >= 1);
+  const MeterChange& last = meters_.back();
+  const double measures = (count - last.count) / last.beats;
+  if (!(measures > 0)) return input_error("the counts of meter changes increase");
+  // Counts from other programs' ticks may be a rounding off.
+  if (std::abs(measures - std::round(measures)) * last.beats > 1e-6) {
+    const double next = last.count + std::ceil(measures) * last.beats;
+    char text[64];
+    (void)std::snprintf(text, sizeof text, "%.10g", next);
+    return input_error("no measure begins here; the next one does at count " + std::string(text));
+  }
+  meter_measure_.push_back(meter_measure_.back() + std::round(measures));
+  meters_.push_back({count, beats});
+  return Done{};
 }
 
 Instant TempoMap::at(double count) const {
@@ -63,11 +84,15 @@ double TempoMap::bpm_at(double count) const {
 
 std::string TempoMap::measure_beat(double count) const {
   // Rounded first, so that a count a nanosecond before a measure is not that measure's "beat 5 of 4".
-  const double beats = std::round((count - 1) * 1e4) / 1e4;
-  const double measure = std::floor(beats / beats_per_measure_);
-  const double beat = beats - measure * beats_per_measure_ + 1;
+  const double plain = std::round(count * 1e4) / 1e4;
+  const auto after = std::upper_bound(meters_.begin() + 1, meters_.end(), plain + 1e-6,
+                                      [](double c, const MeterChange& m) { return c < m.count; });
+  const std::size_t i = static_cast<std::size_t>(after - meters_.begin()) - 1;
+  const double beats = std::round((plain - meters_[i].count) * 1e4) / 1e4;
+  const double measure = std::floor(beats / meters_[i].beats);
+  const double beat = beats - measure * meters_[i].beats + 1;
   char text[64];
-  (void)std::snprintf(text, sizeof text, "%.0f:%.6g", measure + 1, beat);
+  (void)std::snprintf(text, sizeof text, "%.0f:%.6g", measure + meter_measure_[i], beat);
   return text;
 }
 

@@ -117,7 +117,7 @@ performers:
   count: 9
   groups: [{name: odd, members: [1-3, 5], colour: "#7CFC00"}, {name: even, members: 6-7, colour: "#FF69B4"}]
   colour: "#102030"
-music: {meter: 3/4, changes: [{at: count 1, tempo: 90}, {at: count 31, tempo: 60}]}
+music: {meter: 3/4, pickup: 2 counts, changes: [{at: count 1, tempo: 90}, {at: count 31, tempo: 60}, {at: count 33, meter: 5/4}]}
 sections:
   - name: bow
     from: {image: picture.png, fit: contain, invert: true}
@@ -149,7 +149,9 @@ rig: rig.yaml
   EXPECT_EQ(show.performers[3].group, std::nullopt);
   EXPECT_EQ(show.performers[6].group, GroupIndex(1));
   EXPECT_EQ(show.default_colour, (Colour{0x10, 0x20, 0x30}));
-  EXPECT_EQ(show.tempo, TempoMap::from({{1, 90}, {31, 60}}, 3).value());
+  TempoMap tempo = TempoMap::from({{1, 90}, {31, 60}}, 3, 2).value();
+  ASSERT_TRUE(tempo.change_meter(33, 5));
+  EXPECT_EQ(show.tempo, tempo);
   ASSERT_EQ(show.sections.size(), 2U);
   EXPECT_EQ(show.sections[0].name, "film") << "sections are sorted by start";
   const auto& video = std::get<VideoSource>(show.sections[0].from);
@@ -221,16 +223,17 @@ TEST_F(ShowFile, WantsUnitsAndRanges) {
 }
 
 TEST_F(ShowFile, WantsAllKindsOfValuesWhereTheyBelong) {
-  EXPECT_EQ(errors("footlight: 2\ntitle: \"\"\nstage: big\nperformers: [x]\nmusic:\nsections: {}\n"),
-            "show.yaml:1:12: error: footlight: \"2\" is out of range (1)\n"
-            "show.yaml:2:8: error: title: the text is empty (write one, or leave the key out)\n"
-            "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, reserve, "
-            "clearance, max_speed, lag)\n"
-            "show.yaml:4:13: error: performers: a list stands where a mapping belongs (keys: count, from, groups, "
-            "colour)\n"
-            "show.yaml:5:1: error: music: nothing stands where a mapping belongs (keys: tempo, changes, meter)\n"
-            "show.yaml:6:11: error: sections: a mapping stands where a list belongs (write [...] or lines that begin "
-            "with -)\n");
+  EXPECT_EQ(
+      errors("footlight: 2\ntitle: \"\"\nstage: big\nperformers: [x]\nmusic:\nsections: {}\n"),
+      "show.yaml:1:12: error: footlight: \"2\" is out of range (1)\n"
+      "show.yaml:2:8: error: title: the text is empty (write one, or leave the key out)\n"
+      "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, reserve, "
+      "clearance, max_speed, lag)\n"
+      "show.yaml:4:13: error: performers: a list stands where a mapping belongs (keys: count, from, groups, "
+      "colour)\n"
+      "show.yaml:5:1: error: music: nothing stands where a mapping belongs (keys: tempo, changes, meter, pickup)\n"
+      "show.yaml:6:11: error: sections: a mapping stands where a list belongs (write [...] or lines that begin "
+      "with -)\n");
 }
 
 TEST_F(ShowFile, KeepsCellsOnTheGridAndTheWingsFree) {
@@ -408,6 +411,26 @@ TEST_F(ShowFile, RefusesWrongLooksAndMusic) {
   EXPECT_EQ(errors_with("music: {changes: [{at: count 1, tempo: 90}, {at: count 1, tempo: 80}]}\n"),
             "show.yaml:6:50: error: music.changes[1].at: count 1 does not come after count 1 (the counts increase down "
             "the list)\n");
+  const auto changes = [&](const std::string& more) {
+    return errors_with("music: {changes: [{at: count 1, tempo: 90}, " + more + "]}\n");
+  };
+  EXPECT_EQ(changes("{at: count 6, meter: 3/4}"),
+            "show.yaml:6:66: error: music.changes[1].meter: no measure begins here; the next one does at count 9 (a "
+            "meter changes where a measure begins)\n");
+  EXPECT_EQ(changes("{at: count 5, meter: 3}"),
+            "show.yaml:6:66: error: music.changes[1].meter: \"3\" is not a meter (write for example 4/4; 1 to 64 "
+            "counts a measure)\n");
+  EXPECT_EQ(changes("{at: count 5}"),
+            "show.yaml:6:45: error: music.changes[1]: nothing changes (give a tempo or a meter)\n");
+  EXPECT_EQ(errors_with("music: {changes: [{at: count 1, meter: 3/4}]}\n"),
+            "show.yaml:6:19: error: music.changes[0]: no tempo at count 1 (the first change gives the first tempo; the "
+            "first meter is music.meter)\n");
+  EXPECT_EQ(errors_with("music: {changes: [{at: count 1, tempo: 90, meter: 3/4}]}\n"),
+            "show.yaml:6:19: error: music.changes[0]: a meter at count 1 (the first change gives the first tempo; the "
+            "first meter is music.meter)\n");
+  EXPECT_EQ(errors_with("music: {meter: 3/4, pickup: 3 counts}\n"),
+            "show.yaml:6:29: error: music.pickup: a pick-up of 3 counts is no shorter than a measure (fewer than 3 "
+            "counts)\n");
 }
 
 TEST_F(ShowFile, WantsASectionAtLeast) {

@@ -88,7 +88,32 @@ TEST(TempoMap, NeverTellsABeatThatTheMeasureHasNot) {
   EXPECT_EQ(TempoMap(120, 4).measure_beat(3 - 1e-10), "1:3");
 }
 
+TEST(TempoMap, CountsAPickUpAsTheEndOfMeasureZero) {
+  const TempoMap map = *TempoMap::from({{1, 120}}, 4, 1);
+  EXPECT_EQ(map.measure_beat(1), "0:4");
+  EXPECT_EQ(map.measure_beat(2), "1:1");
+  EXPECT_EQ(map.measure_beat(6), "2:1");
+  EXPECT_EQ(map.pickup_counts(), 1);
+  EXPECT_EQ(map.at(2), instant_at(0.5)) << "measures are for print alone";
+}
+
+TEST(TempoMap, NumbersMeasuresOnThroughChangesOfMeter) {
+  TempoMap map = *TempoMap::from({{1, 120}}, 4, 2);
+  ASSERT_TRUE(map.change_meter(11, 3));
+  ASSERT_TRUE(map.change_meter(17, 5));
+  EXPECT_EQ(map.measure_beat(10), "2:4");
+  EXPECT_EQ(map.measure_beat(11), "3:1");
+  EXPECT_EQ(map.measure_beat(16), "4:3");
+  EXPECT_EQ(map.measure_beat(17), "5:1");
+  EXPECT_EQ(map.measure_beat(17 - 1e-10), "5:1");
+  EXPECT_EQ(map.measure_beat(22.5), "6:1.5");
+  EXPECT_EQ(map.change_meter(23, 4).error(), input_error("no measure begins here; the next one does at count 27"));
+  EXPECT_EQ(map.change_meter(17, 4).error(), input_error("the counts of meter changes increase"));
+}
+
 TEST(TempoMap, RefusesWhatIsNoTempoMap) {
+  EXPECT_EQ(TempoMap::from({{1, 120}}, 4, 4).error(), input_error("a pick-up is shorter than a measure"));
+
   const auto message = [](std::vector<TempoChange> changes, int beats) {
     return TempoMap::from(std::move(changes), beats).error();
   };
