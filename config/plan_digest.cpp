@@ -70,6 +70,8 @@ void add(Sha256& sum, const TransitionFacts& facts) {
 std::string digest_of(const Plan& plan) {
   Sha256 sum;
   sum.text("footlight plan 2").text(plan.title).text(plan.show_hash);
+  // Plans from before there were versions keep their digest.
+  if (!plan.version.empty()) sum.text("version").text(plan.version);
   add(sum, plan.stage);
   add_list(sum, plan.performers, [&](const std::string& id) { sum.text(id); });
   add_list(sum, plan.radius_m, [&](double value) { sum.real(value); });

@@ -31,6 +31,7 @@ void write_meta(Database& database, const Plan& plan) {
                                                              {"valid", plan.valid ? "1" : "0"},
                                                              {"digest", digest_of(plan)}};
   for (const auto& [key, value] : values) meta.bind(key).bind(std::string_view(value)).run();
+  if (!plan.version.empty()) meta.bind(std::string_view("version")).bind(std::string_view(plan.version)).run();
 }
 
 void write_stage(Database& database, const Stage& stage) {

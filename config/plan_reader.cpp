@@ -132,14 +132,16 @@ class PlanReader {
   bool meta() {
     Statement statement = database_.prepare("SELECT key, value FROM meta");
     std::map<std::string, std::string> values;
-    while (values.size() <= 4 && statement.step()) {
+    while (values.size() <= 5 && statement.step()) {
       values.emplace(statement.text(0).value_or(""), statement.text(1).value_or(""));
     }
-    if (statement.failed() || values.size() != 4 || !values.contains("title") || !values.contains("show_hash") ||
+    const std::size_t known = values.contains("version") ? 5 : 4;
+    if (statement.failed() || values.size() != known || !values.contains("title") || !values.contains("show_hash") ||
         !values.contains("valid") || !values.contains("digest") || (values["valid"] != "0" && values["valid"] != "1")) {
       return fail("table meta: title, show_hash, valid and digest are needed");
     }
     plan_.title = values["title"];
+    plan_.version = values["version"];
     plan_.show_hash = values["show_hash"];
     plan_.valid = values["valid"] == "1";
     digest_ = values["digest"];

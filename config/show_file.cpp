@@ -20,6 +20,7 @@ constexpr std::size_t kShownAlike = 3;
 void read_show(ShowReading& show, MappingReader& root) {
   (void)root.integer("footlight");
   show.show().title = root.text("title").value_or("");
+  show.show().version = root.text("version").value_or("");
   if (auto stage = root.mapping("stage")) read_stage(show, std::move(*stage));
   show.show().stage.walk = root.choice("walk").value_or(0) == 0 ? WalkKind::straight : WalkKind::cells;
   if (auto performers = root.mapping("performers")) read_performers(show, std::move(*performers));

@@ -86,6 +86,7 @@ struct TransitionFacts {
 /// Where everybody stands at every instant, with the limits it was proved against.
 struct Plan {
   std::string title;
+  std::string version;    ///< of the show, as its people call it; empty: it has none
   std::string show_hash;  ///< hex SHA-256 of the show file and everything it reads
   Stage stage;
   std::vector<std::string> performers;  ///< ids, in the order of the tracks

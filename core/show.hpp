@@ -184,7 +184,8 @@ struct LookChoice {
 
 struct Show {
   std::string title;
-  std::string file;  ///< path of the show file
+  std::string version;  ///< as its people call it; empty: it has none
+  std::string file;     ///< path of the show file
   Stage stage;
   std::vector<Performer> performers;
   std::vector<Group> groups;

@@ -118,6 +118,7 @@ class ShowPlanner {
   void describe() {
     Plan& plan = planned_.plan;
     plan.title = show_.title;
+    plan.version = show_.version;
     plan.stage = show_.stage;
     for (const Performer& performer : show_.performers) {
       if (performer.absent) continue;

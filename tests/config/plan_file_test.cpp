@@ -29,6 +29,7 @@ class AnyPlan {
   Plan make(int most_people = 12) {
     Plan plan;
     plan.title = text();
+    plan.version = text();
     plan.show_hash = text();
     const GridKind kinds[] = {GridKind::square, GridKind::hexagonal, GridKind::triangular};
     plan.stage.grid = *Grid::make(kinds[rng_.below(3)], 1 + number(40), 1 + number(40), 0.1 + rng_.uniform());
@@ -239,6 +240,13 @@ TEST_F(HarmedPlan, ANumberThatSomebodyEditedIsFound) {
 TEST_F(HarmedPlan, AValidityThatSomebodyGrantedIsFound) {
   EXPECT_EQ(after("UPDATE meta SET value = 1 - value WHERE key = 'valid'"),
             harmed("its content does not match its digest"));
+}
+
+TEST_F(HarmedPlan, AnotherVersionOfTheShowIsFound) {
+  EXPECT_EQ(after("INSERT OR REPLACE INTO meta VALUES('version', 'another')"),
+            harmed("its content does not match its digest"));
+  EXPECT_EQ(after("INSERT INTO meta VALUES('more', '')"),
+            harmed("table meta: title, show_hash, valid and digest are needed"));
 }
 
 TEST_F(HarmedPlan, ValuesOutOfRangeAreNamed) {

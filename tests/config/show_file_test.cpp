@@ -106,6 +106,7 @@ TEST_F(ShowFile, TakesEveryKey) {
   const LoadedShow all = loaded(R"(# yaml-language-server: $schema=../docs/schema/show.schema.json
 footlight: 1
 title: "Everything"
+version: 3.10
 stage:
   grid: {kind: hexagonal, columns: 30, rows: 20, pitch: 80 cm}
   blocked: [A1, C3:B2]
@@ -139,6 +140,7 @@ announce: 6 counts
 rig: rig.yaml
 )");
   const Show& show = all.show;
+  EXPECT_EQ(show.version, "3.10") << "a text, not a number";
   EXPECT_EQ(show.stage.grid.kind(), GridKind::hexagonal);
   EXPECT_EQ(show.stage.grid.pitch_m(), 0.8);
   EXPECT_EQ(show.stage.blocked.size(), 5U);
@@ -234,6 +236,15 @@ TEST_F(ShowFile, WantsAllKindsOfValuesWhereTheyBelong) {
       "show.yaml:5:1: error: music: nothing stands where a mapping belongs (keys: tempo, changes, meter, pickup)\n"
       "show.yaml:6:11: error: sections: a mapping stands where a list belongs (write [...] or lines that begin "
       "with -)\n");
+}
+
+TEST_F(ShowFile, WantsAVersionThatIsAText) {
+  const auto error = [&](const std::string& value) {
+    const std::string text = errors(std::string(kHead) + "version: " + value + "\n" + std::string(kSection));
+    return text.substr(0, text.find('\n') + 1);
+  };
+  EXPECT_EQ(error("[2]"), "show.yaml:5:10: error: version: a list stands where a single value belongs\n");
+  EXPECT_EQ(error("\"\""), "show.yaml:5:10: error: version: the text is empty (write one, or leave the key out)\n");
 }
 
 TEST_F(ShowFile, KeepsCellsOnTheGridAndTheWingsFree) {
