@@ -9,6 +9,7 @@
 
 #include "app/load.hpp"
 #include "app/simulated_buses.hpp"
+#include "app/wire_log/wire_recorder.hpp"
 #include "config/device_profile.hpp"
 #include "config/nearest.hpp"
 #include "config/rig_file.hpp"
@@ -18,6 +19,7 @@ namespace footlight::app {
 namespace {
 
 constexpr Duration kPollReal = milliseconds(1);
+constexpr const char* kLogEnding = ".pcapng";
 constexpr std::uint8_t kPlanByte = 0;  // no show is on the bus
 
 bool is_url(const std::string& text) { return text.find("://") != std::string::npos; }
@@ -136,10 +138,36 @@ Status<> DeviceBus::connect(const DeviceBusChoice& choice) {
     port_ = std::move(port).value();
     reference = drivers::reference(port_);
   }
+  if (!choice.wire_log.empty()) {
+    if (auto started = start_log(choice.wire_log); !started) return started;
+    reference = logged_.emplace(*log_).before(index_.at(), bus().kind, reference);
+  }
   auto driver = drivers::make_driver(bus(), nodes_, kPlanByte, reference);
   if (!driver) return std::move(driver).error();
   driver_ = std::move(driver).value();
   return Done{};
+}
+
+Status<> DeviceBus::start_log(const std::string& file) {
+  if (!file.ends_with(kLogEnding)) {  // a show file that is named by mistake stays
+    return input_error("--wire-log " + config::in_quotes(file) + ": not the name of such a file (as wires" +
+                       kLogEnding + ")");
+  }
+  if (auto opened = log_file_.emplace("wire log", file).open(); !opened) return opened;
+  if (simulated_) {
+    log_ = std::make_unique<DirectWireLog>(log_file_->stream(), rig_, virtual_time_);
+    return Done{};
+  }
+  auto recorder = WireRecorder::open(rig_, {{}, &log_file_->stream()}, real_time_);
+  if (!recorder) return recorder.error();
+  log_ = std::move(recorder).value();
+  return Done{};
+}
+
+Status<> DeviceBus::keep_log() {
+  if (!log_file_) return Done{};
+  if (auto* recorder = dynamic_cast<WireRecorder*>(log_.get())) recorder->close();
+  return log_file_->keep();
 }
 
 const Clock& DeviceBus::clock() const {
@@ -171,6 +199,7 @@ Status<> DeviceBus::run(Session& session, controller::BusService& service, const
     }
   }
   session.clear_line();
+  if (auto kept = keep_log(); !kept) return kept;
   if (service.failure()) {
     const std::string trouble = simulated_ ? "" : drivers::trouble_of(drivers::reference(port_));
     if (!trouble.empty()) return Error{service.failure()->kind, "bus \"" + bus().name + "\": " + trouble};

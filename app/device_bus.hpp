@@ -3,10 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/growing_file.hpp"
 #include "app/session.hpp"
+#include "app/wire_log/logged_ports.hpp"
+#include "app/wire_log/wire_log.hpp"
 #include "controller/bus_service.hpp"
 #include "core/clock.hpp"
 #include "core/result.hpp"
@@ -26,6 +30,7 @@ struct DeviceBusChoice {
   bool simulated = false;   ///< the rig's nodes in virtual time, whatever its URLs
   std::string faults;       ///< of the simulated ones
   std::uint64_t seed = 1;
+  std::string wire_log;  ///< pcapng file of what goes over the wire; empty: none
 };
 
 /// The rig that a show names. Errors: whatever the files have wrong.
@@ -50,6 +55,8 @@ class DeviceBus {
 
  private:
   Status<> connect(const DeviceBusChoice& choice);
+  Status<> start_log(const std::string& file);
+  Status<> keep_log();
 
   Rig rig_;
   BusIndex index_;
@@ -58,6 +65,9 @@ class DeviceBus {
   std::unique_ptr<sim::SimulatedRig> simulated_;
   drivers::Port port_;
   std::vector<drivers::NodeAddress> nodes_;
+  std::optional<GrowingFile> log_file_;
+  std::unique_ptr<WireLog> log_;
+  std::optional<LoggedPorts> logged_;
   std::unique_ptr<drivers::Driver> driver_;
 };
 

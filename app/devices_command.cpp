@@ -229,6 +229,8 @@ void add_bus_options(CLI::App& command, Options& options) {
   command.add_option("--profile", options.choice.profile, "device profile of a Modbus URL");
   command.add_option("--bits-per-second", options.choice.bits_per_second, "speed of a URL")
       ->check(CLI::Range(1200, 4'000'000));
+  command.add_option("--wire-log", options.choice.wire_log,
+                     "write what goes over the wire to this .pcapng file, for Wireshark");
   command.add_flag("--sim", options.choice.simulated, "on simulated devices, in virtual time, whatever the URLs say");
   command.add_option("--faults", options.choice.faults, "with --sim: what goes wrong, as loss=5%,dead=1");
   command.add_option("--seed", options.choice.seed, "with --sim: what happens by chance depends on this number alone");

@@ -185,7 +185,8 @@ Json wires_json(const MachineWires& wires, const Rig& rig) {
   for (const GpioChip& chip : wires.gpio) {
     gpio.push_back({{"name", chip.name}, {"label", chip.label}, {"lines", chip.lines}, {"buses", buses_on(chip, rig)}});
   }
-  return {{"serial", std::move(serial)}, {"can", std::move(can)}, {"gpio", std::move(gpio)}, {"troubles", wires.troubles}};
+  return {
+      {"serial", std::move(serial)}, {"can", std::move(can)}, {"gpio", std::move(gpio)}, {"troubles", wires.troubles}};
 }
 
 }  // namespace footlight::app

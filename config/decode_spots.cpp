@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kSurroundings = 3;  // wider than the lamp
 constexpr double kAboveNoise = 6;
-constexpr float kLeastLight = 3;                // grey values
-constexpr double kDeviationOfMedian = 1.4826;   // of a normal distribution: sigma / median absolute deviation
-constexpr int kHistogramBins = 2048;            // of |difference|, 0..256
-constexpr std::size_t kSampleEvery = 3;         // pixels, for the noise
+constexpr float kLeastLight = 3;               // grey values
+constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution: sigma / median absolute deviation
+constexpr int kHistogramBins = 2048;           // of |difference|, 0..256
+constexpr std::size_t kSampleEvery = 3;        // pixels, for the noise
 
 /// Median of |value| of a picture whose values are about symmetric around 0.
 double median_deviation(const cv::Mat& picture) {
@@ -60,11 +60,10 @@ std::vector<LightSpot> find_spots(const cv::Mat& grey, double radius_px, std::si
   cv::Mat light;
   cv::Mat surroundings;
   cv::GaussianBlur(frame, light, {}, radius_px, radius_px, cv::BORDER_REPLICATE);
-  cv::GaussianBlur(light, surroundings, {}, kSurroundings * radius_px, kSurroundings * radius_px,
-                   cv::BORDER_REPLICATE);
+  cv::GaussianBlur(light, surroundings, {}, kSurroundings * radius_px, kSurroundings * radius_px, cv::BORDER_REPLICATE);
   light -= surroundings;
-  const auto threshold = std::max(kLeastLight, static_cast<float>(kAboveNoise * kDeviationOfMedian *
-                                                                   median_deviation(light)));
+  const auto threshold =
+      std::max(kLeastLight, static_cast<float>(kAboveNoise * kDeviationOfMedian * median_deviation(light)));
   const int reach = std::max(1, static_cast<int>(std::lround(1.5 * radius_px)));
   cv::Mat highest;
   cv::dilate(light, highest, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1}));

@@ -39,9 +39,7 @@ std::string scalar_text(const std::string& text, bool quoted) {
 
 std::string flow(const TextNode& node);
 
-std::string flow(const TextEntry& entry) {
-  return scalar_text(entry.key, false) + ": " + flow(*entry.value);
-}
+std::string flow(const TextEntry& entry) { return scalar_text(entry.key, false) + ": " + flow(*entry.value); }
 
 std::string flow(const TextNode& node) {
   std::string out;

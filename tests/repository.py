@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """House rules that a compiler does not see: the dependency rule between folders, sources that no target builds, files without a licence
-line, clocks read outside of core/clock.cpp, libraries used outside of their one place. One line for each finding; exit status 1 if any."""
+line, clocks read outside of core/clock.cpp, libraries used outside of their one place, tests that docs/faults.md names and that are not there. One line for each finding; exit status 1 if any."""
 import os
 import re
 import subprocess
@@ -39,6 +39,21 @@ def tracked(*patterns):
     return [f for f in out if f and os.path.exists(os.path.join(ROOT, f))]
 
 
+def faults_without_test():
+    """docs/faults.md promises with the names of tests: each of them is there."""
+    tests = ""
+    for path in tracked("tests/*.cpp", "tests/e2e/*.py"):
+        with open(os.path.join(ROOT, path)) as f:
+            tests += f.read()
+    names = {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", tests, re.M)}
+    names |= {f"{suite}.{name}" for suite in ("Devices", "Live") for name in re.findall(r"def (test_\w+)", tests)}
+    with open(os.path.join(ROOT, "docs", "faults.md")) as f:
+        named = re.findall(r"`(\w+\.\w+\*?|\w+\.\*)`", f.read())
+    suites = {name.split(".")[0] for name in names}
+    return [f"docs/faults.md: there is no test {name}" for name in sorted(set(named))
+            if name not in names and not (name.endswith("*") and (any(n.startswith(name[:-1]) for n in names) or name[:-2] in suites))]
+
+
 def main():
     findings = []
     product = [f for d in FOLDERS for f in tracked(f"{d}/*.cpp", f"{d}/*.hpp")]
@@ -66,6 +81,7 @@ def main():
             if folder in MAY_INCLUDE and path not in ("core/clock.cpp", "core/clock.hpp") and \
                     re.search(r"(steady_clock|system_clock|high_resolution_clock)::now|clock_gettime|gettimeofday", line):
                 findings.append(f"{path}:{number}: the time is read from a core/clock.hpp Clock")
+    findings += faults_without_test()
     for finding in findings:
         print(finding)
     return 1 if findings else 0

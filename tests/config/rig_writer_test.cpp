@@ -80,8 +80,6 @@ constexpr const char* kRig =
     "  - {bus: s, address: 2, channels: [{wearable: W 1}, C3, D3, E3]}\n"
     "floor: {buses: [\"left, 1\", s], channels_per_node: 6}\n";
 
-
-
 TEST_F(RigWriter, WhatItWritesReadsAsTheSameRig) {
   folder_.write("rig.yaml", kRig);
 

@@ -59,16 +59,19 @@ class Cable final : public drivers::ByteStream {
 /// Buses of a rig with a show that changes every lamp every second.
 class Floor {
  public:
-  Floor(const std::vector<BusKind>& kinds, std::size_t nodes_per_bus, const sim::Faults& faults = {})
+  Floor(const std::vector<BusKind>& kinds, std::size_t nodes_per_bus, const sim::Faults& faults = {},
+        std::uint64_t seed = 1)
       : rig_(rig_of(kinds, nodes_per_bus)),
         schedule_(schedule_of(rig_.nodes.size())),
-        simulated_(rig_, faults, 1, clock_, nullptr) {
+        simulated_(rig_, faults, seed, clock_, nullptr) {
     for (std::size_t b = 0; b < kinds.size(); ++b) {
       const auto bus = BusIndex::of(b);
       drivers::PortReference port;
       if (kinds[b] == BusKind::serial) {
         cables_.push_back(std::make_unique<Cable>(simulated_.serial(bus)));
         port = cables_.back().get();
+      } else if (kinds[b] == BusKind::can) {
+        port = &simulated_.can(bus);
       } else {
         port = &simulated_.modbus(bus);
       }
@@ -130,7 +133,8 @@ class Floor {
   static Rig rig_of(const std::vector<BusKind>& kinds, std::size_t nodes_per_bus) {
     Rig rig;
     for (std::size_t b = 0; b < kinds.size(); ++b) {
-      rig.buses.push_back({"b" + std::to_string(b), kinds[b], "sim://b", 115'200, std::nullopt, {}});
+      const int speed = kinds[b] == BusKind::can ? 500'000 : 115'200;
+      rig.buses.push_back({"b" + std::to_string(b), kinds[b], "sim://b", speed, std::nullopt, {}});
       for (std::size_t i = 1; i <= nodes_per_bus; ++i) {
         rig.nodes.push_back({"n" + std::to_string(b) + "-" + std::to_string(i),
                              BusIndex::of(b),
@@ -282,6 +286,29 @@ TEST(SlowOrDeadDevice, AnswersThatAreLateCostTheirOwnTimeAlone) {
   EXPECT_GT(floor.loop(0).counters().misses, 0U);
   EXPECT_LT(worst_of_a_thousand(floor.lateness()), kBeat);
   EXPECT_LE(floor.loop(0).counters().late_latches, floor.loop(0).counters().latches / 20);
+}
+
+TEST(RebootingDevice, IsSeenWithinT1AndT0AndRightAgainAtTheNextSwitch) {
+  constexpr Duration kOff = milliseconds(300);
+  constexpr Duration kSeen = milliseconds(1'250);  // T1 and T0 of a bus that is asked within a second
+  for (const BusKind kind : {BusKind::serial, BusKind::modbus_rtu, BusKind::modbus_tcp, BusKind::can}) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      Floor floor({kind}, 6, {.reboot = 1, .until = 0.5}, seed);
+      ASSERT_EQ(floor.simulated().reboots().size(), 1U);
+      const Instant at = floor.simulated().reboots().front().at;
+      const NodeIndex node = floor.simulated().reboots().front().node;
+      const std::string what = std::string(to_text(kind)) + ", seed " + std::to_string(seed);
+      floor.run_until(at + kOff / 2);
+      EXPECT_EQ(floor.simulated().shown(node, 0), kDark) << what << ": it has no power";
+      floor.run_until(at + kOff + microseconds(1));
+      EXPECT_EQ(floor.simulated().shown(node, 0), kNoGuidance) << what;
+      floor.run_until(at + kOff + kSeen);
+      EXPECT_EQ(floor.loop(0).counters().boots, 1U) << what;
+      const Instant next_switch = kStart + ((floor.now() - kStart) / kBeat + 1) * kBeat;
+      floor.run_until(next_switch + kBeat / 2);
+      EXPECT_EQ(floor.wrong(0), 0) << what;
+    }
+  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/devices/canopen/canopen_driver.hpp"
+#include "drivers/devices/canopen/sdo_client.hpp"
 #include "drivers/devices/footlight_serial/serial_driver.hpp"
 #include "drivers/devices/modbus/modbus_driver.hpp"
 #include "tests/drivers/recording_ports.hpp"
@@ -163,6 +164,42 @@ TEST(CanopenGolden, EveryFrameOfANodeIsUnderstood) {
   EXPECT_EQ(log.events[2].kind, Kind::rejected);
   EXPECT_EQ(log.events[2].detail, 0x8210);
   EXPECT_EQ(log.events[2].node, kSeven.node);
+}
+
+/// Plays the answers to a client and records what it says.
+std::vector<CanFrame> transfer(canopen::SdoClient& client, const CanFrame& first,
+                               const std::vector<CanFrame>& answers) {
+  std::vector<CanFrame> said{first};
+  for (const CanFrame& answer : answers) {
+    EXPECT_EQ(client.state(), canopen::SdoClient::State::waiting);
+    if (const auto next = client.take(answer)) said.push_back(*next);
+  }
+  return said;
+}
+
+TEST(CanopenGolden, SdoTransfersAreAsDocumented) {
+  using State = canopen::SdoClient::State;
+  using Bytes = std::vector<std::uint8_t>;
+  const Golden golden("canopen.txt");
+  canopen::SdoClient client;
+  const auto answers = [&](const std::string& name) { return golden.frames(name + "-answer"); };
+  EXPECT_EQ(transfer(client, client.read(7, {0x1018, 2}), answers("sdo-product")), golden.frames("sdo-product"));
+  EXPECT_EQ(client.data(), (Bytes{0x4B, 0x4D, 0x4C, 0x46}));
+  EXPECT_EQ(transfer(client, client.read(7, {0x1008, 0}), answers("sdo-name")), golden.frames("sdo-name"));
+  EXPECT_EQ(client.state(), State::done);
+  EXPECT_EQ(std::string(client.data().begin(), client.data().end()), "Footlight marker");
+  EXPECT_EQ(transfer(client, client.write(7, {0x2104, 0}, Bytes{1}), answers("sdo-identify")),
+            golden.frames("sdo-identify"));
+  EXPECT_EQ(client.state(), State::done);
+  const Bytes nine{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(transfer(client, client.write(7, {0x2200, 3}, nine), answers("sdo-write-long")),
+            golden.frames("sdo-write-long"));
+  EXPECT_EQ(client.state(), State::done);
+  EXPECT_EQ(transfer(client, client.read(7, {0x2FFF, 0}), answers("sdo-nothing")), golden.frames("sdo-nothing"));
+  EXPECT_EQ(client.state(), State::aborted);
+  EXPECT_EQ(client.abort_code(), 0x06020000U);
+  (void)client.read(7, {0x1018, 2});
+  EXPECT_EQ(std::vector{client.give_up()}, golden.frames("sdo-give-up"));
 }
 
 /// A request as it stands in an RTU frame, without the check sum (transport tests compare that, too).

@@ -201,6 +201,23 @@ def make_cases(Stage, footlight, program):
                 self.assertEqual(one.read(), two.read(), "equal runs give equal logs")
             self.assert_understood(self.path("one.pcapng"), ("can", "ip", "exported_pdu", "rtacser"))
 
+        def test_tshark_knows_the_sdo_transfers_of_a_technician(self):
+            self.make_show(("left",))
+            with open(self.path("s", "rig.yaml"), "w") as f:
+                f.write("rig: 1\nbuses: [{name: far, kind: can, url: 'can://can0'}]\nfloor: {buses: [far], channels_per_node: 8}\n")
+            for number, task in enumerate((["scan", "far", "--addresses", "1-14"], ["health", "far"], ["identify", "far/2"])):
+                log = self.path(f"{number}.pcapng")
+                footlight("devices", *task, "--sim", "--show", self.show, "--wire-log", log)
+                packets = self.tshark(log)
+                self.assertTrue(all(p == "can:canopen" for p, _ in packets), packets)
+                self.assertEqual(self.tshark(log, "_ws.malformed || _ws.expert.severity >= 0x00800000"), [])
+                for word in ("Default-SDO (rx)", "Default-SDO (tx)"):
+                    self.assertTrue(any(word in i for _, i in packets), (word, packets[:20]))
+            scan = self.tshark(self.path("0.pcapng"), "canopen.sdo.main_idx == 0x1018 && canopen.sdo.sub_idx == 2")
+            self.assertGreaterEqual(len(scan), 2 * 12, "the product code of each node is asked and told")
+            segments = self.tshark(self.path("0.pcapng"), "canopen.sdo.ccs == 3")
+            self.assertGreater(len(segments), 0, "its name comes in segments")
+
         def test_a_run_leaves_its_wires_and_the_bundle_packs_them(self):
             self.make_show()
             self.serve()

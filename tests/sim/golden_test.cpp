@@ -115,6 +115,27 @@ TEST_F(Golden, CanFramesAreUnderstoodAndAnswered) {
   EXPECT_EQ(seven.state(), NodeState::showing);
 }
 
+TEST_F(Golden, SdoRequestsAreAnswered) {
+  const auto lines = golden("canopen.txt");
+  CanopenMarker marker(7, seven);
+  marker.power_on();
+  const auto frames = [&](const std::string& name) {
+    std::vector<drivers::CanFrame> out;
+    const auto [begin, end] = lines.equal_range(name);
+    for (auto line = begin; line != end; ++line) out.push_back(can_frame(line->second));
+    return out;
+  };
+  for (const std::string name : {"sdo-product", "sdo-name", "sdo-identify", "sdo-nothing"}) {
+    std::vector<drivers::CanFrame> answers;
+    for (const drivers::CanFrame& request : frames(name)) {
+      EXPECT_EQ(marker.receive(request, kStart), CanopenMarker::Reaction::sdo) << name;
+      answers.push_back(marker.sdo_answer());
+    }
+    EXPECT_EQ(answers, frames(name + "-answer")) << name;
+  }
+  EXPECT_TRUE(seven.identifying(kStart));
+}
+
 TEST_F(Golden, ModbusFramesAreUnderstood) {
   const auto lines = golden("modbus.txt");
   const auto bytes = [&](const char* name) { return octets(lines.find(name)->second); };

@@ -113,6 +113,19 @@ def can(identifier, data):
     return f"{identifier:03X}#" + "".join(f"{byte:02X}" for byte in data)
 
 
+def sdo(command, index=0, sub=0, data=b""):
+    """Request or answer that names an object (CiA 301, 7.2.4.3): command, index, sub-index, four bytes."""
+    return struct.pack("<BHB", command, index, sub) + bytes(data).ljust(4, b"\0")
+
+
+def segment(toggle, data, last):
+    """Up to seven bytes: bit 4 toggles, bits 3 to 1 tell how many are unused, bit 0 the last one."""
+    return bytes([toggle << 4 | (7 - len(data)) << 1 | last]) + data.ljust(7, b"\0")
+
+
+ASK, ANSWER = 0x607, 0x587
+TEXT = b"Footlight marker"
+LONG = b"123456789"
 write("canopen.txt", ["As candump -L writes frames. Node 7 has 32 channels, node 9 has 5; looks as in serial.txt."], [
     ("NMT start of all nodes, and of node 7 alone", "start", can(0x000, [1, 0])),
     ("", "start-one", can(0x000, [1, 7])),
@@ -129,6 +142,27 @@ write("canopen.txt", ["As candump -L writes frames. Node 7 has 32 channels, node
     ("Node 7: boot-up, then operational", "boot-up", can(0x707, [0])),
     ("", "operational", can(0x707, [5])),
     ("EMCY 0x8210 of node 7, error register 0x11", "emergency", can(0x087, [0x10, 0x82, 0x11, 0, 0, 0, 0, 0])),
+    ("SDO: product code 0x1018:2 of node 7, expedited", "sdo-product", can(ASK, sdo(0x40, 0x1018, 2))),
+    ("", "sdo-product-answer", can(ANSWER, sdo(0x43, 0x1018, 2, struct.pack("<I", 0x464C4D4B)))),
+    ("SDO: name 0x1008 of node 7, 16 bytes in three segments", "sdo-name", can(ASK, sdo(0x40, 0x1008))),
+    ("", "sdo-name", can(ASK, bytes([0x60]).ljust(8, b"\0"))),
+    ("", "sdo-name", can(ASK, bytes([0x70]).ljust(8, b"\0"))),
+    ("", "sdo-name", can(ASK, bytes([0x60]).ljust(8, b"\0"))),
+    ("", "sdo-name-answer", can(ANSWER, sdo(0x41, 0x1008, 0, struct.pack("<I", len(TEXT))))),
+    ("", "sdo-name-answer", can(ANSWER, segment(0, TEXT[0:7], 0))),
+    ("", "sdo-name-answer", can(ANSWER, segment(1, TEXT[7:14], 0))),
+    ("", "sdo-name-answer", can(ANSWER, segment(0, TEXT[14:], 1))),
+    ("SDO: 1 into 0x2104 of node 7, expedited: identify", "sdo-identify", can(ASK, sdo(0x2F, 0x2104, 0, [1]))),
+    ("", "sdo-identify-answer", can(ANSWER, sdo(0x60, 0x2104))),
+    ("SDO: nine bytes into 0x2200:3 of node 7, in two segments; a foreign device", "sdo-write-long", can(ASK, sdo(0x21, 0x2200, 3, struct.pack("<I", len(LONG))))),
+    ("", "sdo-write-long", can(ASK, segment(0, LONG[0:7], 0))),
+    ("", "sdo-write-long", can(ASK, segment(1, LONG[7:], 1))),
+    ("", "sdo-write-long-answer", can(ANSWER, sdo(0x60, 0x2200, 3))),
+    ("", "sdo-write-long-answer", can(ANSWER, bytes([0x20]).ljust(8, b"\0"))),
+    ("", "sdo-write-long-answer", can(ANSWER, bytes([0x30]).ljust(8, b"\0"))),
+    ("SDO: 0x2FFF is not in the dictionary: abort 0x06020000", "sdo-nothing", can(ASK, sdo(0x40, 0x2FFF))),
+    ("", "sdo-nothing-answer", can(ANSWER, sdo(0x80, 0x2FFF, 0, struct.pack("<I", 0x06020000)))),
+    ("SDO: the controller gives up 0x1018:2: abort 0x05040000", "sdo-give-up", can(ASK, sdo(0x80, 0x1018, 2, struct.pack("<I", 0x05040000)))),
 ])
 
 WORD = (PLAN << 8) + 17
