@@ -161,6 +161,7 @@ std::string formations_csv(const Plan& plan) {
 std::string stage_json(const Plan& plan, const Show& show) {
   const Grid& grid = plan.stage.grid;
   Json out{{"title", plan.title},
+           {"version", plan.version},
            {"valid", plan.valid},
            {"show_hash", plan.show_hash},
            {"grid",

@@ -162,6 +162,7 @@ Json plan_json(const MeasuredPlan& measured) {
   const Plan& plan = measured.plan;
   Json out{{"file", measured.file},
            {"title", plan.title},
+           {"version", plan.version},
            {"valid", plan.valid},
            {"performers", plan.performers.size()},
            {"lag_s", to_seconds(plan.stage.lag)},

@@ -143,6 +143,8 @@ void draw_change(Canvas& canvas, const Plan& now, const Formation& formation, co
 
 PlanDiff diff_of(const Plan& before, const Plan& now) {
   PlanDiff out;
+  out.plan_before = Stamp(before).plan;
+  out.plan_now = Stamp(now).plan;
   const auto old_people = numbers_of(before.performers);
   const auto people = numbers_of(now.performers);
   for (const std::string& id : before.performers) {
@@ -185,6 +187,8 @@ std::string diff_json(const PlanDiff& diff) {
   Json out{
       {"old", measures(diff.before)}, {"new", measures(diff.now)}, {"joined", diff.joined},      {"left", diff.left},
       {"changed", diff.changed},      {"same", diff.same},         {"formations", Json::array()}};
+  out["old"]["plan"] = diff.plan_before;
+  out["new"]["plan"] = diff.plan_now;
   for (const FormationDiff& one : diff.formations) {
     Json formation{{"id", one.id}, {"kind", kind_text(one.kind)}, {"displaced", one.displaced.size()}};
     if (one.kind != FormationDiff::Kind::added) formation["old_count"] = one.count_before;

@@ -28,6 +28,8 @@ struct FormationDiff {
 
 /// What two plans of one show do not have in common. People and formations are the same when their ids are.
 struct PlanDiff {
+  std::string plan_before;  ///< first digits of the plans' digests, as on paper
+  std::string plan_now;
   std::vector<std::string> joined;  ///< ids of people who are only in the new plan
   std::vector<std::string> left;
   std::vector<std::string> changed;       ///< who has other marks, in natural order

@@ -172,6 +172,7 @@ std::string plan_json(const Show& show, const planner::Planned& planned) {
   const auto measures = walks_of(plan);
   const auto transitions = transitions_of(plan);
   Json out{{"title", plan.title},
+           {"version", plan.version},
            {"show_hash", plan.show_hash},
            {"valid", plan.valid},
            {"performers", plan.performers.size()},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,13 +14,16 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <tbb/parallel_for.h>
 
 #include "app/find_in_show.hpp"
 #include "app/output_place.hpp"
 #include "app/paper/preview.hpp"
 #include "app/plan_step.hpp"
+#include "app/planar_frame.hpp"
 #include "app/video_writer.hpp"
+#include "app/written.hpp"
 #include "config/output_file.hpp"
 
 namespace footlight::app {
@@ -28,7 +32,7 @@ namespace {
 constexpr int kSmallestSide = 64;
 constexpr int kLargestSide = 7680;
 /// Frames that are drawn at once, each on a canvas of its own.
-constexpr std::size_t kAtOnce = 16;
+constexpr std::size_t kAtOnce = 8;
 
 struct Options {
   PlanChoice choice;
@@ -98,37 +102,56 @@ Status<> set_range(Scene& scene, const Options& options) {
   return Done{};
 }
 
+std::size_t frames_of(const Scene& scene, double rate) {
+  return static_cast<std::size_t>(std::floor(to_seconds(scene.last - scene.first) * rate + 1e-9)) + 1;
+}
+
+/// Frames that are drawn, and then encoded while the next are drawn.
+using Block = std::vector<std::vector<unsigned char>>;
+
+Status<> write_block(VideoWriter& writer, const Block& block) {
+  for (const auto& frame : block) {
+    if (auto done = writer.write(frame); !done) return done;
+  }
+  return Done{};
+}
+
 Status<> film(Session& session, const Scene& scene, const Options& options) {
-  const PreviewFrame frame(scene.plan, scene.show, scene.stamp, scene.films, scene.style, scene.size.width,
-                           scene.size.height);
-  auto writer = VideoWriter::open(
-      options.output, {scene.size.width, scene.size.height, options.rate, scene.stamp.title, scene.stamp.line()});
+  const auto [width, height] = scene.size;
+  const PreviewFrame frame(scene.plan, scene.show, scene.stamp, scene.films, scene.style, width, height);
+  auto writer = VideoWriter::open(options.output, {width, height, options.rate, scene.stamp.title, scene.stamp.line()});
   if (!writer) return std::move(writer).error();
+  const auto blank = [&] { return Canvas::png(scene.size.width, scene.size.height, kOnScreen.ground); };
   std::vector<Canvas> still;
   for (std::size_t s = 0; s < scene.plan.sections.size(); ++s) {
-    still.push_back(Canvas::png(scene.size.width, scene.size.height, kOnScreen.ground));
+    still.push_back(blank());
     frame.draw_still(still.back(), SectionIndex::of(s));
   }
-  std::vector<Canvas> drawn;
-  for (std::size_t i = 0; i < kAtOnce; ++i) {
-    drawn.push_back(Canvas::png(scene.size.width, scene.size.height, kOnScreen.ground));
-  }
-  const auto frames =
-      static_cast<std::size_t>(std::floor(to_seconds(scene.last - scene.first) * options.rate + 1e-9)) + 1;
+  std::vector<Canvas> canvases;
+  for (std::size_t i = 0; i < kAtOnce; ++i) canvases.push_back(blank());
+  Block drawn;
+  Block encoded;
+  std::future<Status<>> writing;
+  const std::size_t frames = frames_of(scene, options.rate);
   for (std::size_t begin = 0; begin < frames; begin += kAtOnce) {
     if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while filming; nothing was written"};
     session.tell("filming", static_cast<double>(begin) / static_cast<double>(frames));
     const std::size_t end = std::min(begin + kAtOnce, frames);
+    drawn.resize(end - begin);
     tbb::parallel_for(begin, end, [&](std::size_t k) {
       const Instant at = scene.first + seconds(static_cast<double>(k) / options.rate);
-      Canvas& canvas = drawn[k - begin];
+      Canvas& canvas = canvases[k - begin];
       canvas.copy(still[frame.preview().section_of(at).at()]);
       frame.draw_moving(canvas, at);
+      to_planar(canvas.pixels(), scene.size.width, scene.size.height, drawn[k - begin]);
     });
-    for (std::size_t k = begin; k < end; ++k) {
-      if (auto done = writer->write(drawn[k - begin].pixels()); !done) return done;
+    if (writing.valid()) {
+      if (auto done = writing.get(); !done) return done;
     }
+    std::swap(drawn, encoded);
+    writing = std::async(std::launch::async, [&] { return write_block(*writer, encoded); });
   }
+  if (auto done = writing.get(); !done) return done;
   return writer->finish();
 }
 
@@ -194,7 +217,21 @@ int run(Session& session, const Options& options) {
       return session.fail(done.error());
   }
   session.clear_line();
-  session.print(fmt::format("{}: plan {}", options.output, scene.stamp.plan));
+  if (session.json) {
+    auto out = written_json(scene.stamp, {options.output});
+    out.update({{"view", options.view}, {"width", size->width}, {"height", size->height}});
+    if (video) {
+      out.update({{"rate", options.rate},
+                  {"frames", frames_of(scene, options.rate)},
+                  {"from_s", to_seconds(scene.first)},
+                  {"to_s", to_seconds(scene.last)}});
+    } else if (!options.sheet) {
+      out["at_s"] = to_seconds(scene.first);
+    }
+    session.print(out.dump(2));
+  } else {
+    session.print(fmt::format("{}: plan {}", options.output, scene.stamp.plan));
+  }
   // A preview of a refused plan helps to see why; it says so itself.
   const auto refused = refusal_of(planned->planned);
   return refused ? session.fail(*refused) : 0;
@@ -219,7 +256,7 @@ void add_preview_command(CLI::App& program, Session& session, Chosen& chosen) {
       ->check(CLI::Range(-1e9, 1e9));
   command->add_option("--formation", options->formation, "the formation of a picture, as growth/12");
   command->add_flag("--contact-sheet", options->sheet, "all key formations in one picture");
-  session.add_options(*command, false);
+  session.add_options(*command, true);
   command->footer(
       "Films are made by the program ffmpeg.\n\n"
       "Examples:\n  footlight preview show.yaml -o show.mp4\n"

@@ -15,13 +15,13 @@
 #include "app/output_place.hpp"
 #include "app/paper/stamp.hpp"
 #include "app/plan_step.hpp"
+#include "app/report_json.hpp"
 #include "app/report_page.hpp"
 #include "app/simulated_buses.hpp"
 #include "config/output_file.hpp"
 #include "controller/bus_budget.hpp"
 #include "controller/cue_list.hpp"
 #include "core/check.hpp"
-#include "core/clock.hpp"
 
 namespace footlight::app {
 namespace {
@@ -35,30 +35,26 @@ constexpr double kStep_s = 1;
 
 /// What every bus has to carry at its hardest switch.
 Result<std::vector<BusLoad>> bus_loads(const Show& show, const Plan& plan, const Rig& rig) {
-  const Rig wires = with_simulated_buses(rig);
-  ManualClock clock;
-  sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
-  const auto drivers = drivers_on(simulated, wires, plan);
-  if (!drivers) return drivers.error();
-  const auto schedule = controller::build_schedule(show, plan, wires, *drivers);
-  if (!schedule) return schedule.error();
   std::vector<Duration> gaps;
   for (const auto& play : controller::cue_plays(show, plan)) {
     gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
   }
   std::vector<BusLoad> out;
-  for (const Bus& bus : wires.buses) out.push_back({bus.name, 0, 0, 0, 0, ""});
-  for (const controller::BusNeed& need : controller::bus_needs(*schedule, wires, *drivers, gaps)) {
-    BusLoad& bus = out[need.bus.at()];
-    const double allowed_s = to_seconds(need.allowed());
-    const double load = allowed_s > 0 ? to_seconds(need.needed()) / allowed_s : 0;
-    if (need.changed == 0 || load <= bus.busiest) continue;
-    bus.busiest = load;
-    bus.needed_s = to_seconds(need.needed());
-    bus.allowed_s = allowed_s;
-    bus.changed = need.changed;
-    bus.cause = schedule->switches()[need.k].cause;
-  }
+  for (const Bus& bus : rig.buses) out.push_back({bus.name, 0, 0, 0, 0, ""});
+  const auto find_hardest = [&](const SimulatedSchedule& built) {
+    for (const controller::BusNeed& need : bus_needs(built.schedule, built.wires, built.drivers, gaps)) {
+      BusLoad& bus = out[need.bus.at()];
+      const double allowed_s = to_seconds(need.allowed());
+      const double load = allowed_s > 0 ? to_seconds(need.needed()) / allowed_s : 0;
+      if (need.changed == 0 || load <= bus.busiest) continue;
+      bus.busiest = load;
+      bus.needed_s = to_seconds(need.needed());
+      bus.allowed_s = allowed_s;
+      bus.changed = need.changed;
+      bus.cause = built.schedule.switches()[need.k].cause;
+    }
+  };
+  if (auto built = with_schedule(show, plan, rig, find_hardest); !built) return std::move(built).error();
   return out;
 }
 
@@ -90,18 +86,31 @@ ReportFacts facts_of(Session& session, const PlannedShow& planned) {
 }
 
 int run(Session& session, const Options& options) {
-  if (auto free = can_write(options.output); !free) return session.fail(free.error());
+  const bool page = !options.output.empty();
+  if (!page && !session.json) return session.fail(input_error("say what to write: -o FILE.html, or --json"));
+  if (page) {
+    if (auto free = can_write(options.output); !free) return session.fail(free.error());
+  }
   auto planned = plan_for(session, options.choice, true);
   if (!planned) return session.fail(planned.error());
-  if (auto spared = spare_inputs(planned->loaded, options.output); !spared) return session.fail(spared.error());
+  if (page) {
+    if (auto spared = spare_inputs(planned->loaded, options.output); !spared) return session.fail(spared.error());
+  }
   FL_CHECK(planned->films.has_value());  // they were asked for
   const ReportFacts facts = facts_of(session, *planned);
   if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted; nothing was written"});
   const Plan& plan = planned->plan();
-  const std::string page = report_html(plan, planned->loaded.show, *planned->films, facts);
-  if (auto done = config::write_file(options.output, page); !done) return session.fail(done.error());
+  const Show& show = planned->loaded.show;
+  if (page) {
+    const std::string html = report_html(plan, show, *planned->films, facts);
+    if (auto done = config::write_file(options.output, html); !done) return session.fail(done.error());
+  }
   session.clear_line();
-  session.print(fmt::format("{}: plan {}", options.output, Stamp(plan).plan));
+  if (session.json) {
+    session.print(report_json(plan, show, facts, page ? std::vector{options.output} : std::vector<std::string>()));
+  } else {
+    session.print(fmt::format("{}: plan {}", options.output, Stamp(plan).plan));
+  }
   // The report of a refused plan helps to see why; it says so itself.
   const auto refused = refusal_of(planned->planned);
   return refused ? session.fail(*refused) : 0;
@@ -113,10 +122,11 @@ void add_report_command(CLI::App& program, Session& session, Chosen& chosen) {
   CLI::App* command = program.add_subcommand("report", "Tell everything about a show in one HTML page");
   auto options = std::make_shared<Options>();
   options->choice.add_options(*command);
-  command->add_option("-o,--output", options->output, "the HTML file; it needs no other file and no network")
-      ->required();
-  session.add_options(*command, false);
-  command->footer("Examples:\n  footlight report show.yaml -o report.html\n");
+  command->add_option("-o,--output", options->output, "the HTML file; it needs no other file and no network");
+  session.add_options(*command, true);
+  command->footer(
+      "Examples:\n  footlight report show.yaml -o report.html\n"
+      "  footlight report show.yaml --json | jq '.sections[].theta_dev'\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
 }
 

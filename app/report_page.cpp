@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
 #include <nettle/base64.h>
 
+#include "app/html_text.hpp"
 #include "app/paper/plot.hpp"
 #include "app/paper/preview.hpp"
 
@@ -170,8 +172,11 @@ class Page {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return c.least_m[i]; });
     Table table({"closest pairs", "distance", "when"});
-    for (const std::size_t i : std::span(order).first(std::min(kClosest, order.size()))) {
-      if (!std::isfinite(c.least_m[i])) break;
+    // Two who walk together for long are one line.
+    std::set<std::pair<PerformerIndex, PerformerIndex>> told;
+    for (const std::size_t i : order) {
+      if (told.size() == kClosest || !std::isfinite(c.least_m[i])) break;
+      if (!told.insert(std::minmax(c.a[i], c.b[i])).second) continue;
       table.add({name_of(c.a[i]) + " and " + name_of(c.b[i]), fmt::format("{:.3f} m", c.least_m[i]), when(c.at_s[i])});
     }
     out_ += table.html();
@@ -214,15 +219,17 @@ class Page {
   }
 
   void crowd() {
-    heading("How calmly the crowd moves",
-            "Xu et al. 2015: mutual information of place and direction (Eq. 17; low: people near each other and far "
-            "apart go the same way), spread of the distance to the nearest neighbour (Eq. 24), spread of the way since "
-            "the formation before (Eq. 26).");
+    heading(
+        "How calmly the crowd moves",
+        "Xu et al. 2015: mutual information of place and direction (I_d, Eq. 17; low: people near each other and far "
+        "apart go the same way) and of place and speed (I_v), spread of the distance to the nearest neighbour (Eq. "
+        "24), spread of the way since "
+        "the formation before (Eq. 26).");
     const CrowdSeries& c = facts_.crowd;
-    out_ += plotted({"Mutual information of place and direction",
+    out_ += plotted({"Mutual information of place with direction and with speed",
                      "time, s",
                      "bits",
-                     {{"I_d", c.time_s, c.information}},
+                     {{"I_d", c.time_s, c.information}, {"I_v", c.time_s, c.pace_information}},
                      {},
                      "",
                      true,
@@ -291,23 +298,6 @@ class Page {
 };
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string report_html(const Plan& plan, const Show& show, const Films& films, const ReportFacts& facts) {
   return Page(plan, show, films, facts).html();

@@ -42,7 +42,4 @@ struct ReportFacts {
 /// One HTML page that needs nothing else: styles and pictures are inside.
 [[nodiscard]] std::string report_html(const Plan& plan, const Show& show, const Films& films, const ReportFacts& facts);
 
-/// For text and attributes of HTML.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 }  // namespace footlight::app

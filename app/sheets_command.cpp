@@ -2,29 +2,24 @@
 #include "app/sheets_command.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
+#include <nlohmann/json.hpp>
 
+#include "app/desk.hpp"
 #include "app/find_in_show.hpp"
-#include "app/natural_order.hpp"
 #include "app/output_place.hpp"
-#include "app/paper/flow.hpp"
-#include "app/paper/lists.hpp"
-#include "app/paper/poster.hpp"
-#include "app/paper/sheet.hpp"
+#include "app/paper/qr_code.hpp"
+#include "app/paper_files.hpp"
 #include "app/plan_step.hpp"
-#include "config/output_file.hpp"
+#include "app/written.hpp"
 
 namespace footlight::app {
 namespace {
@@ -32,6 +27,8 @@ namespace {
 struct Options {
   PlanChoice choice;
   std::string output;
+  std::string pages;
+  std::string base_url;
   std::vector<std::string> only;
   std::vector<std::string> performers;
   std::string group;
@@ -42,20 +39,12 @@ struct Options {
   std::string words = "stage";
   int cards = 1;
   double step_cm = 100 * kDrillStep_m;
+
+  [[nodiscard]] bool one_file() const { return output.ends_with(".pdf"); }
+  [[nodiscard]] Wanted wanted() const { return {{only.begin(), only.end()}, {}}; }
 };
 
 const std::map<std::string, PaperSize> kPapers{{"a4", kA4}, {"letter", kLetter}, {"phone", kPhone}};
-
-/// Everything that the papers of one run are made from.
-struct Desk {
-  const Plan& plan;
-  const Show& show;
-  const Rig& rig;
-  SheetFormat format;
-  Stamp stamp;
-  std::vector<Part> parts;
-  std::vector<PerformerIndex> people;  ///< whose sheets are wanted, in natural order of names
-};
 
 SheetFormat format_of(const Options& options) {
   SheetFormat out;
@@ -85,100 +74,9 @@ Result<std::vector<PerformerIndex>> people_of(const Show& show, const Options& o
     const bool wanted = group ? show.performers[p].group == group : options.performers.empty();
     if (wanted) out.push_back(PerformerIndex::of(p));
   }
-  std::ranges::sort(out, [&](PerformerIndex a, PerformerIndex b) {
-    const std::string& one = show.performers[a.at()].name;
-    const std::string& other = show.performers[b.at()].name;
-    return natural_less(one, other) || (!natural_less(other, one) && a < b);
-  });
+  sort_by_name(show, out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
-}
-
-/// Only those whose sheets say something else than those of an earlier plan.
-Status<> keep_changed(Desk& desk, const std::string& file) {
-  auto old = plan_alone(file);
-  if (!old) return std::move(old).error();
-  // The old plan's people, called as now.
-  Show show = desk.show;
-  show.performers.clear();
-  std::map<std::string, std::size_t> now;
-  for (std::size_t p = 0; p < desk.show.performers.size(); ++p) now[desk.show.performers[p].id] = p;
-  std::map<std::string, std::size_t> before;
-  for (std::size_t p = 0; p < old->performers.size(); ++p) {
-    const std::string& id = old->performers[p];
-    const auto known = now.find(id);
-    before[id] = p;
-    Performer& performer = show.performers.emplace_back();
-    if (known != now.end()) performer = desk.show.performers[known->second];
-    performer.id = id;
-    if (performer.name.empty()) performer.name = id;
-  }
-  if (old->sections.size() != show.sections.size()) show.cues.clear();
-  const std::vector<Part> parts = parts_of(*old, show);
-  const SheetWords old_words(show, *old, desk.format.words);
-  const SheetWords words(desk.show, desk.plan, desk.format.words);
-  std::erase_if(desk.people, [&](PerformerIndex who) {
-    const auto then = before.find(desk.plan.performers[who.at()]);
-    return then != before.end() && old_words.rows_of(parts[then->second]) == words.rows_of(desk.parts[who.at()]);
-  });
-  return Done{};
-}
-
-void warn_of_missing(Session& session, int missing) {
-  if (missing > 0) {
-    session.note(fmt::format(
-        "{} characters are drawn as empty boxes: no font here has them (Chinese: install fonts-noto-cjk)", missing));
-  }
-}
-
-Result<std::string> all_sheets(Session& session, const Desk& desk) {
-  Sheets sheets(desk.show, desk.plan, desk.stamp, desk.format);
-  Canvas canvas = sheets.document(desk.stamp.title);
-  for (std::size_t i = 0; i < desk.people.size(); ++i) {
-    if (session.stopped())
-      return Error{ErrorKind::interrupted, "interrupted while drawing sheets; nothing was written"};
-    session.tell("sheets", static_cast<double>(i) / static_cast<double>(desk.people.size()));
-    sheets.draw(canvas, desk.people[i], desk.parts[desk.people[i].at()]);
-  }
-  warn_of_missing(session, canvas.missing_characters());
-  return canvas.finish();
-}
-
-std::string list_pdf(const Desk& desk, const std::string& title, const auto& draw) {
-  const PaperSize& paper = desk.format.paper;
-  Canvas canvas = Canvas::pdf(paper.width_pt, paper.height_pt, {title, desk.stamp.line()});
-  canvas.set_language(code_of(desk.format.words.language));
-  draw(canvas);
-  return canvas.finish();
-}
-
-std::string calls_pdf(const Desk& desk) {
-  return list_pdf(desk, "Called cues", [&](Canvas& canvas) {
-    Flow flow(canvas, desk.format.paper, desk.stamp);
-    const Language language = desk.format.words.language;
-    add_call_list(flow, desk.plan, desk.show, desk.parts, std::nullopt, language);
-    for (std::size_t g = 0; g < desk.show.groups.size(); ++g) {
-      add_call_list(flow, desk.plan, desk.show, desk.parts, GroupIndex::of(g), language);
-    }
-  });
-}
-
-std::string patch_pdf(const Desk& desk) {
-  return list_pdf(desk, "Patch list", [&](Canvas& canvas) {
-    Flow flow(canvas, desk.format.paper, desk.stamp);
-    add_patch_list(flow, desk.plan, desk.show, desk.rig);
-  });
-}
-
-std::string floor_pdf(const Desk& desk) {
-  return list_pdf(desk, "Floor plan",
-                  [&](Canvas& canvas) { draw_floor_plan(canvas, desk.format.paper, desk.stamp, desk.plan, desk.rig); });
-}
-
-std::string chart_pdf(const Desk& desk, FormationIndex formation) {
-  return list_pdf(desk, desk.plan.formations[formation.at()].id, [&](Canvas& canvas) {
-    draw_chart(canvas, desk.format.paper, desk.stamp, desk.plan, desk.show, formation);
-  });
 }
 
 /// The formation that was asked for, else the last one of each section.
@@ -197,121 +95,108 @@ Result<std::vector<FormationIndex>> charted(const Plan& plan, const Options& opt
   return out;
 }
 
-using File = std::pair<std::string, std::string>;  // name in the folder, content
-
-/// Everybody's own file, a block of people at a time on all processors.
-Status<> write_sheets(Session& session, const Desk& desk, const std::filesystem::path& folder) {
-  std::set<std::string> taken;
-  std::vector<std::string> names;
-  for (const PerformerIndex who : desk.people) {
-    names.push_back(file_name_of(desk.show.performers[who.at()].name, taken) + ".pdf");
+/// What stands before a page's name in its address. Errors: it is no address; one with a name would not fit a code.
+Status<> add_codes(Desk& desk, const Options& options) {
+  if (options.base_url.empty()) {
+    if (!options.pages.empty()) desk.add_codes(SheetCode::text, {});
+    return Done{};
   }
-  constexpr std::size_t kBlock = 64;
-  int missing = 0;
-  for (std::size_t begin = 0; begin < desk.people.size(); begin += kBlock) {
-    if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while writing sheets"};
-    session.tell("sheets", static_cast<double>(begin) / static_cast<double>(desk.people.size()));
-    const std::size_t end = std::min(begin + kBlock, desk.people.size());
-    std::vector<std::pair<std::string, int>> drawn(end - begin);
-    tbb::parallel_for(begin, end, [&](std::size_t i) {
-      Sheets sheets(desk.show, desk.plan, desk.stamp, desk.format);
-      const PerformerIndex who = desk.people[i];
-      Canvas canvas = sheets.document(desk.show.performers[who.at()].name);
-      sheets.draw(canvas, who, desk.parts[who.at()]);
-      const int unknown = canvas.missing_characters();
-      drawn[i - begin] = {canvas.finish(), unknown};
-    });
-    for (std::size_t i = begin; i < end; ++i) {
-      missing += drawn[i - begin].second;
-      if (auto done = config::write_file(folder / names[i], drawn[i - begin].first); !done) return done;
+  std::string base = options.base_url;
+  const bool web = base.starts_with("https://") || base.starts_with("http://");
+  const auto odd = [](char c) { return c <= ' ' || c == '"' || c == '<' || c == '>' || c == '\x7F'; };
+  if (!web || base.find("//") + 2 == base.size() || std::ranges::any_of(base, odd)) {
+    return input_error(fmt::format(
+        "--base-url: '{}' is no web address (write that of the folder with the pages, as https://example.org/show/)",
+        base));
+  }
+  if (base.back() != '/' && base.back() != '=' && base.back() != '#') base += '/';
+  desk.add_codes(SheetCode::address, base);
+  for (const PerformerIndex who : desk.people()) {
+    const std::size_t bytes = desk.address_of(who).size();
+    if (bytes <= kMostCodeBytes) continue;
+    return input_error(fmt::format("--base-url: the address of {}'s page has {} bytes, a code on a sheet holds {}",
+                                   desk.show().performers[who.at()].name, bytes, kMostCodeBytes));
+  }
+  return Done{};
+}
+
+/// What the command line alone has wrong.
+Status<> check(const Options& options) {
+  if (options.output.empty() && options.pages.empty()) {
+    return input_error("say what to write: -o FOLDER, -o FILE.pdf, --pages FOLDER");
+  }
+  if (options.one_file() && options.only.size() > 1) {
+    return input_error("one PDF holds one kind of paper (name a folder, or one kind with --only)");
+  }
+  for (const std::string& place : {options.output, options.pages}) {
+    if (place.empty()) continue;
+    if (auto free = can_write(place); !free) return free;
+  }
+  return Done{};
+}
+
+Status<> write_all(PaperFiles& writer, const Desk& desk, const Options& options, const Wanted& wanted) {
+  if (!options.pages.empty()) {
+    if (auto done = writer.pages(options.pages); !done) return done;
+  }
+  if (options.output.empty()) return Done{};
+  if (!options.one_file()) return writer.folder(options.output, wanted);
+  if (desk.people().empty() && wanted.has("sheets")) return Done{};
+  return writer.one(options.output, wanted);
+}
+
+void tell_written(Session& session, const Desk& desk, const Options& options, const std::vector<std::string>& files) {
+  session.clear_line();
+  if (session.json) {
+    auto out = written_json(desk.stamp(), files);
+    out["performers"] = desk.plan().performers.size();
+    out["drawn"] = nlohmann::ordered_json::array();
+    for (const PerformerIndex who : desk.people()) out["drawn"].push_back(desk.plan().performers[who.at()]);
+    session.print(out.dump(2));
+    return;
+  }
+  const auto told = [&](const std::string& place, const char* what) {
+    const std::string sheets =
+        fmt::format("{} of {} performers' {}", desk.people().size(), desk.plan().performers.size(), what);
+    if (files.empty()) {
+      session.print(sheets + " have changed; nothing was written");
+      return;
     }
-  }
-  warn_of_missing(session, missing);
-  return Done{};
-}
-
-bool wants(const Options& options, const std::string& what) {
-  return options.only.empty() || std::ranges::find(options.only, what) != options.only.end();
-}
-
-Status<> write_folder(Session& session, const Desk& desk, const Options& options,
-                      const std::vector<FormationIndex>& charts) {
-  const std::filesystem::path folder = options.output;
-  if (auto made = make_folder(folder / (wants(options, "sheets") ? "sheets" : "")); !made) return made;
-  const auto write = [&](const std::string& name, const std::string& content) -> Status<> {
-    if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while writing " + name};
-    session.tell(name, 0);
-    return config::write_file(folder / name, content);
+    const bool people = place == options.pages || !options.one_file() || options.wanted().has("sheets");
+    session.print(fmt::format("{}: {}plan {}", place, people ? sheets + ", " : "", desk.stamp().plan));
   };
-  if (wants(options, "sheets")) {
-    if (auto done = write_sheets(session, desk, folder / "sheets"); !done) return done;
-  }
-  if (wants(options, "calls")) {
-    if (auto done = write("calls.pdf", calls_pdf(desk)); !done) return done;
-  }
-  if (wants(options, "patch")) {
-    if (auto done = write("patch.pdf", patch_pdf(desk)); !done) return done;
-  }
-  if (wants(options, "floor")) {
-    if (auto done = write("floor.pdf", floor_pdf(desk)); !done) return done;
-  }
-  if (!wants(options, "charts")) return Done{};
-  std::set<std::string> taken;
-  for (const FormationIndex formation : charts) {
-    const std::string name = "chart-" + file_name_of(desk.plan.formations[formation.at()].id, taken) + ".pdf";
-    if (auto done = write(name, chart_pdf(desk, formation)); !done) return done;
-  }
-  return Done{};
-}
-
-Result<std::string> one_file(Session& session, const Desk& desk, const Options& options,
-                             const std::vector<FormationIndex>& charts) {
-  const std::string what = options.only.empty() ? "sheets" : options.only.front();
-  if (what == "calls") return calls_pdf(desk);
-  if (what == "patch") return patch_pdf(desk);
-  if (what == "floor") return floor_pdf(desk);
-  if (what == "charts") return chart_pdf(desk, charts.back());
-  return all_sheets(session, desk);
+  if (!options.pages.empty()) told(options.pages, "pages");
+  if (!options.output.empty()) told(options.output, "sheets");
 }
 
 int run(Session& session, const Options& options) {
-  const bool one = options.output.ends_with(".pdf");
-  if (one && options.only.size() > 1) {
-    return session.fail(input_error("one PDF holds one kind of paper (name a folder, or one kind with --only)"));
-  }
-  if (auto free = can_write(options.output); !free) return session.fail(free.error());
+  if (auto right = check(options); !right) return session.fail(right.error());
   auto planned = plan_for(session, options.choice, false);
   if (!planned) return session.fail(planned.error());
   if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
-  if (auto spared = spare_inputs(planned->loaded, options.output); !spared) return session.fail(spared.error());
-  const Plan& plan = planned->plan();
-  const Show& show = planned->loaded.show;
-  auto people = people_of(show, options);
+  for (const std::string& place : {options.output, options.pages}) {
+    if (place.empty()) continue;
+    if (auto spared = spare_inputs(planned->loaded, place); !spared) return session.fail(spared.error());
+  }
+  auto people = people_of(planned->loaded.show, options);
   if (!people) return session.fail(people.error());
-  const auto charts = charted(plan, options);
+  const auto charts = charted(planned->plan(), options);
   if (!charts) return session.fail(charts.error());
-  if (one && wants(options, "charts") && !options.only.empty() && charts->size() > 1) {
+  Wanted wanted = options.wanted();
+  wanted.charts = *charts;
+  if (options.one_file() && wanted.has("charts") && !options.only.empty() && charts->size() > 1) {
     return session.fail(input_error("one PDF holds one chart (name it with --formation, or name a folder)"));
   }
-  Desk desk{plan, show, planned->loaded.rig, format_of(options), Stamp(plan), parts_of(plan, show), *people};
+  Desk desk(planned->plan(), planned->loaded.show, planned->loaded.rig, format_of(options), *people);
+  if (auto added = add_codes(desk, options); !added) return session.fail(added.error());
   if (!options.changed_since.empty()) {
-    if (auto done = keep_changed(desk, options.changed_since); !done) return session.fail(done.error());
+    const auto old = plan_alone(options.changed_since);
+    if (!old) return session.fail(old.error());
+    desk.keep_changed(*old);
   }
-  const std::string sheets = fmt::format("{} of {} performers' sheets", desk.people.size(), plan.performers.size());
-  if (one && desk.people.empty()) {
-    session.print(sheets + " have changed; nothing was written");
-    return 0;
-  }
-  if (one) {
-    auto content = one_file(session, desk, options, *charts);
-    if (!content) return session.fail(content.error());
-    if (auto done = config::write_file(options.output, *content); !done) return session.fail(done.error());
-  } else if (auto done = write_folder(session, desk, options, *charts); !done) {
-    return session.fail(done.error());
-  }
-  session.clear_line();
-  const std::string drawn = !one || wants(options, "sheets") ? sheets + ", " : "";
-  session.print(fmt::format("{}: {}plan {}", options.output, drawn, desk.stamp.plan));
+  PaperFiles writer(session, desk);
+  if (auto done = write_all(writer, desk, options, wanted); !done) return session.fail(done.error());
+  tell_written(session, desk, options, writer.files());
   return 0;
 }
 
@@ -331,8 +216,10 @@ void add_sheets_command(CLI::App& program, Session& session, Chosen& chosen) {
   CLI::App* command = program.add_subcommand("sheets", "Print dot sheets, called cues, charts, patch list, floor plan");
   auto options = std::make_shared<Options>();
   options->choice.add_options(*command);
-  command->add_option("-o,--output", options->output, "a folder for everything, or FILE.pdf for one kind of paper")
-      ->required();
+  command->add_option("-o,--output", options->output, "a folder for everything, or FILE.pdf for one kind of paper");
+  command->add_option("--pages", options->pages, "a folder for everybody's part as a page for a telephone, HTML");
+  command->add_option("--base-url", options->base_url,
+                      "where the pages will be found: sheets get a QR code that leads there");
   command->add_option("--only", options->only, "sheets, calls, charts, patch, floor; commas between them")
       ->delimiter(',')
       ->check(CLI::IsMember({"sheets", "calls", "charts", "patch", "floor"}));
@@ -343,14 +230,15 @@ void add_sheets_command(CLI::App& program, Session& session, Chosen& chosen) {
                       "only sheets that say something else than this plan's");
   command->add_option("--formation", options->formation, "chart this formation (default: the last of each section)");
   add_look_options(*command, *options);
-  session.add_options(*command, false);
+  session.add_options(*command, true);
   command->footer(
       "Every page carries the title, the show's and the plan's hash. \"part\" at the foot of a sheet stays the same "
       "while\n"
       "the sheet does, so that older sheets can be told to be right still.\n\n"
       "Examples:\n  footlight sheets show.yaml -o out/paper\n  footlight sheets show.yaml -o cards.pdf --cards 4\n"
       "  footlight sheets show.yaml -o ana.pdf --performer \"Ana Ruiz\" --paper phone --language zh\n"
-      "  footlight sheets show.yaml -o new.pdf --changed-since monday.plan\n");
+      "  footlight sheets show.yaml -o new.pdf --changed-since monday.plan\n"
+      "  footlight sheets show.yaml --pages out/pages -o all.pdf --base-url https://example.org/show/\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });
 }
 

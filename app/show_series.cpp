@@ -17,6 +17,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kBins = 10;
 constexpr int kSectors = 8;
+constexpr int kPaces = 8;
 
 double deviation(const std::vector<double>& values) {
   if (values.empty()) return kNone;
@@ -59,20 +60,44 @@ Point velocity_at(const Grid& grid, const std::vector<Mark>& track, Instant inst
   return (1 / to_seconds(after->time - from.time)) * (grid.centre(after->cell) - grid.centre(from.cell));
 }
 
-double direction_information(const Plan& plan, const std::vector<Point>& where, Instant at, const Frame& floor) {
+/// Which of equal classes a share of a whole falls into; what is on an edge but for rounding is on it.
+int class_of(double share, int classes) {
+  constexpr double kRounding = 1e-9;
+  return std::clamp(static_cast<int>(std::floor(share * classes + kRounding)), 0, classes - 1);
+}
+
+/// What places tell of how those walk who walk. Not a number: nobody does.
+struct Information {
+  double direction = kNone;
+  double pace = kNone;
+};
+
+Information information_of(const Plan& plan, const std::vector<Point>& where, Instant at, const Frame& floor,
+                           double fastest_mps) {
+  using Pairs = std::vector<std::pair<int, int>>;
   const double bin_m = std::max(floor.high.x - floor.low.x, floor.high.y - floor.low.y) / kBins;
-  std::vector<std::pair<int, int>> across;
-  std::vector<std::pair<int, int>> up;
+  Pairs across_direction;
+  Pairs up_direction;
+  Pairs across_pace;
+  Pairs up_pace;
   for (std::size_t p = 0; p < where.size(); ++p) {
     const Point velocity = velocity_at(plan.stage.grid, plan.tracks[p], at);
     if (velocity == Point{}) continue;
     const double turn = (std::atan2(velocity.y, velocity.x) + std::numbers::pi) / (2 * std::numbers::pi);
     const int sector = std::min(kSectors - 1, static_cast<int>(turn * kSectors));
-    across.emplace_back(static_cast<int>((where[p].x - floor.low.x) / bin_m), sector);
-    up.emplace_back(static_cast<int>((where[p].y - floor.low.y) / bin_m), sector);
+    const int pace = class_of(length(velocity) / fastest_mps, kPaces);
+    const auto across = static_cast<int>((where[p].x - floor.low.x) / bin_m);
+    const auto up = static_cast<int>((where[p].y - floor.low.y) / bin_m);
+    across_direction.emplace_back(across, sector);
+    up_direction.emplace_back(up, sector);
+    across_pace.emplace_back(across, pace);
+    up_pace.emplace_back(up, pace);
   }
-  if (across.empty()) return kNone;
-  return (mutual_information_bits(across) + mutual_information_bits(up)) / 2;
+  if (across_direction.empty()) return {};
+  const auto mean = [](const Pairs& a, const Pairs& b) {
+    return (mutual_information_bits(a) + mutual_information_bits(b)) / 2;
+  };
+  return {mean(across_direction, up_direction), mean(across_pace, up_pace)};
 }
 
 }  // namespace
@@ -108,14 +133,18 @@ DrawingSeries drawing_series(const Plan& plan, const Films& films) {
       out.dev.push_back(kNone);
       out.miss.push_back(kNone);
     }
+    const auto add = [&](double time_s, const planner::judge::FrameJudgement& judged) {
+      out.time_s.push_back(time_s);
+      out.dev.push_back(judged.dev.value_or(kNone));
+      out.miss.push_back(judged.miss.value_or(kNone));
+    };
     for (const std::size_t frame : judge.frames()) {
       const auto judged = judge.judge(frame, scratch);
       const double since =
           static_cast<double>(films[s]->first_frame + static_cast<int>(frame) - section.film->first_frame);
       const double fps = section.film->show_fps;
-      out.time_s.push_back(to_seconds(section.start) + (fps > 0 ? since / fps : 0));
-      out.dev.push_back(judged.dev.value_or(kNone));
-      out.miss.push_back(judged.miss.value_or(kNone));
+      add(to_seconds(section.start) + (fps > 0 ? since / fps : 0), judged);
+      if (fps == 0) add(to_seconds(section.end), judged);  // an image stands as long as its section
     }
   }
   return out;
@@ -142,6 +171,8 @@ CrowdSeries crowd_series(const Plan& plan, double step_s) {
   const Instant end = plan.sections.back().end;
   std::vector<Point> where(plan.tracks.size());
   std::vector<Point> source(plan.tracks.size());
+  const std::vector<double> fastest = way_figures(plan).fastest_mps;
+  const double fastest_mps = fastest.empty() ? 0 : *std::ranges::max_element(fastest);
   std::size_t formation = 0;
   bool sourced = false;
   for (Instant at = plan.sections.front().start; at <= end; at += seconds(step_s)) {
@@ -158,7 +189,9 @@ CrowdSeries crowd_series(const Plan& plan, double step_s) {
     }
     sourced = true;
     out.time_s.push_back(to_seconds(at));
-    out.information.push_back(direction_information(plan, where, at, floor));
+    const Information information = information_of(plan, where, at, floor, fastest_mps);
+    out.information.push_back(information.direction);
+    out.pace_information.push_back(information.pace);
     out.sigma_nearest_m.push_back(deviation(nearest_of(grid, where)));
     out.sigma_effort_m.push_back(deviation(effort));
   }

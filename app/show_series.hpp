@@ -27,8 +27,9 @@ struct ClearanceSeries {
 struct CrowdSeries {
   std::vector<double> time_s;
   std::vector<double> information;  ///< I_d, bits, between place and direction of those who walk; not a number: nobody
-  std::vector<double> sigma_nearest_m;  ///< sigma_min_dis, over everybody
-  std::vector<double> sigma_effort_m;   ///< sigma_curr_eft: way since the formation before, over everybody
+  std::vector<double> pace_information;  ///< I_v, bits, between place and speed of those who walk
+  std::vector<double> sigma_nearest_m;   ///< sigma_min_dis, over everybody
+  std::vector<double> sigma_effort_m;    ///< sigma_curr_eft: way since the formation before, over everybody
 };
 /// One for each performer.
 struct WayFigures {
@@ -36,11 +37,12 @@ struct WayFigures {
   std::vector<double> fastest_mps;
 };
 
-/// Frames that fall into their sections, in the order of time.
+/// Frames that fall into their sections, in the order of time; an image at the begin and end of its section.
 [[nodiscard]] DrawingSeries drawing_series(const Plan& plan, const Films& films);
 /// Exact within each stretch of `stretch_s`.
 [[nodiscard]] ClearanceSeries clearance_series(const Plan& plan, double stretch_s);
-/// Every `step_s`: the floor in ten bins across its longer side, directions in eight sectors.
+/// Every `step_s`: the floor in ten bins across its longer side, directions in eight sectors,
+/// speeds in eight classes up to the fastest walk of the show.
 [[nodiscard]] CrowdSeries crowd_series(const Plan& plan, double step_s);
 [[nodiscard]] WayFigures way_figures(const Plan& plan);
 

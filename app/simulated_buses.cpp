@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "controller/cue_schedule.hpp"
 #include "core/clock.hpp"
 #include "drivers/registry.hpp"
 
@@ -64,7 +63,8 @@ Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedR
   return out;
 }
 
-Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
+Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
+                       const std::function<void(const SimulatedSchedule&)>& use) {
   const Rig wires = with_simulated_buses(rig);
   ManualClock clock;
   sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
@@ -72,7 +72,12 @@ Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
   if (!drivers) return drivers.error();
   const auto schedule = controller::build_schedule(show, plan, wires, *drivers);
   if (!schedule) return schedule.error();
+  if (use) use({wires, *drivers, *schedule});
   return Done{};
+}
+
+Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
+  return with_schedule(show, plan, rig, {});
 }
 
 }  // namespace footlight::app

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "app/wire_log/logged_ports.hpp"
+#include "controller/cue_schedule.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
 #include "core/rig.hpp"
@@ -26,6 +28,18 @@ namespace footlight::app {
 [[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated,
                                                                                const Rig& rig, const Plan& plan,
                                                                                LoggedPorts* logged = nullptr);
+
+/// A show's schedule, and the simulated buses that it is built for.
+struct SimulatedSchedule {
+  const Rig& wires;
+  const std::vector<std::unique_ptr<drivers::Driver>>& drivers;
+  const controller::CueSchedule& schedule;
+};
+
+/// Builds the schedule of a valid plan on simulated buses, and lends it to `use` (which may be empty). Nothing is
+/// played. Errors: as build_schedule.
+[[nodiscard]] Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
+                                     const std::function<void(const SimulatedSchedule&)>& use);
 
 /// Whether the lamps of a valid plan can be lit in time: an error where build_schedule has one. Nothing is played.
 [[nodiscard]] Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig);

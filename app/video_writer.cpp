@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/video_writer.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -11,10 +12,9 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include "config/output_file.hpp"
 
 namespace footlight::app {
 namespace {
@@ -35,7 +35,11 @@ std::vector<std::string> arguments_of(const VideoWriter::Shape& shape, const std
           "-f",
           "rawvideo",
           "-pixel_format",
-          "bgr0",
+          "yuv420p",
+          "-colorspace",
+          "bt709",
+          "-color_range",
+          "tv",
           "-video_size",
           fmt::format("{}x{}", shape.width, shape.height),
           "-framerate",
@@ -51,6 +55,14 @@ std::vector<std::string> arguments_of(const VideoWriter::Shape& shape, const std
           "20",
           "-pix_fmt",
           "yuv420p",
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-color_range",
+          "tv",
           "-fflags",
           "+bitexact",
           "-flags:v",
@@ -66,27 +78,18 @@ std::vector<std::string> arguments_of(const VideoWriter::Shape& shape, const std
           temporary.string()};
 }
 
-/// The last line that ffmpeg said.
-std::string last_line(const std::filesystem::path& said) {
-  auto text = config::read_file(said, kMostSaid);
-  if (!text) return {};
-  while (!text->empty() && (text->back() == '\n' || text->back() == ' ')) text->pop_back();
-  return text->substr(text->rfind('\n') + 1);
-}
-
 }  // namespace
 
-VideoWriter::VideoWriter(std::filesystem::path file, std::filesystem::path temporary, std::filesystem::path said)
-    : file_(std::move(file)), temporary_(std::move(temporary)), said_(std::move(said)) {}
+VideoWriter::VideoWriter(std::filesystem::path file, std::filesystem::path temporary)
+    : file_(std::move(file)), temporary_(std::move(temporary)) {}
 
 VideoWriter::VideoWriter(VideoWriter&& other) noexcept
     : file_(std::move(other.file_)),
       temporary_(std::move(other.temporary_)),
-      said_(std::move(other.said_)),
       child_(std::exchange(other.child_, -1)),
-      pipe_(std::exchange(other.pipe_, -1)) {
+      pipe_(std::exchange(other.pipe_, -1)),
+      said_(std::exchange(other.said_, -1)) {
   other.temporary_.clear();
-  other.said_.clear();
 }
 
 VideoWriter::~VideoWriter() { abandon(); }
@@ -94,13 +97,13 @@ VideoWriter::~VideoWriter() { abandon(); }
 Result<VideoWriter> VideoWriter::open(const std::filesystem::path& file, const Shape& shape) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   const std::string hidden = fmt::format(".{}.{}.", file.filename().string(), getpid());
-  VideoWriter out(file, folder / (hidden + "tmp"), folder / (hidden + "log"));
+  VideoWriter out(file, folder / (hidden + "tmp"));
   // A program that no video will come of must not be begun, and nobody else writes to the pipe.
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return cannot_write(file, std::strerror(errno));
   out.pipe_ = ends[1];
-  const int log = ::open(out.said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (log < 0) {
+  out.said_ = memfd_create("ffmpeg", MFD_CLOEXEC);
+  if (out.said_ < 0) {
     const int error = errno;
     ::close(ends[0]);
     return cannot_write(file, std::strerror(error));
@@ -112,8 +115,8 @@ Result<VideoWriter> VideoWriter::open(const std::filesystem::path& file, const S
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, log, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, log, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.said_, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.said_, STDERR_FILENO);
   // A group of its own: Ctrl-C is for us, and we end it.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -123,24 +126,33 @@ Result<VideoWriter> VideoWriter::open(const std::filesystem::path& file, const S
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[0]);
-  ::close(log);
   if (error == 0) return out;
   out.child_ = -1;
   if (error == ENOENT) return cannot_write(file, "the program ffmpeg is not installed (apt-get install ffmpeg)");
   return cannot_write(file, std::string("ffmpeg cannot be run: ") + std::strerror(error));
 }
 
-Status<> VideoWriter::write(std::span<const unsigned char> pixels) {
-  while (!pixels.empty()) {
-    const ssize_t n = ::write(pipe_, pixels.data(), pixels.size());
+Status<> VideoWriter::write(std::span<const unsigned char> planar) {
+  while (!planar.empty()) {
+    const ssize_t n = ::write(pipe_, planar.data(), planar.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       if (auto done = wait(); !done) return done;
       return cannot_write(file_, "ffmpeg has ended too early");
     }
-    pixels = pixels.subspan(static_cast<std::size_t>(n));
+    planar = planar.subspan(static_cast<std::size_t>(n));
   }
   return Done{};
+}
+
+/// The last line that ffmpeg said.
+std::string VideoWriter::last_said() const {
+  std::string text(kMostSaid, '\0');
+  const off_t end = lseek(said_, 0, SEEK_END);
+  const ssize_t n = pread(said_, text.data(), text.size(), std::max<off_t>(0, end - static_cast<off_t>(kMostSaid)));
+  text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
 }
 
 Status<> VideoWriter::wait() {
@@ -150,7 +162,7 @@ Status<> VideoWriter::wait() {
   }
   child_ = -1;
   // It ends with status 0 even where the end of the film could not be written: it must have said nothing, too.
-  const std::string said = last_line(said_);
+  const std::string said = last_said();
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.empty()) return Done{};
   return cannot_write(file_, said.empty() ? "ffmpeg has failed" : "ffmpeg: " + said);
 }
@@ -165,6 +177,7 @@ Status<> VideoWriter::finish() {
 
 void VideoWriter::abandon() noexcept {
   if (pipe_ >= 0) ::close(std::exchange(pipe_, -1));
+  if (said_ >= 0) ::close(std::exchange(said_, -1));
   if (child_ > 0) {
     kill(child_, SIGKILL);
     while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
@@ -173,7 +186,6 @@ void VideoWriter::abandon() noexcept {
   }
   std::error_code ignored;
   if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
-  if (!said_.empty()) std::filesystem::remove(said_, ignored);
 }
 
 }  // namespace footlight::app

@@ -31,22 +31,22 @@ class VideoWriter {
   /// A film that was not finished leaves nothing.
   ~VideoWriter();
 
-  /// @param pixels 4 bytes each (blue, green, red, unused), rows without gaps. Errors: ffmpeg has given up, with what
-  /// it said.
-  [[nodiscard]] Status<> write(std::span<const unsigned char> pixels);
+  /// @param planar as `to_planar` makes it. Errors: ffmpeg has given up, with what it said.
+  [[nodiscard]] Status<> write(std::span<const unsigned char> planar);
   /// Ends the film, and gives it its name.
   [[nodiscard]] Status<> finish();
 
  private:
-  VideoWriter(std::filesystem::path file, std::filesystem::path temporary, std::filesystem::path said);
+  VideoWriter(std::filesystem::path file, std::filesystem::path temporary);
+  [[nodiscard]] std::string last_said() const;
   Status<> wait();
   void abandon() noexcept;
 
   std::filesystem::path file_;
   std::filesystem::path temporary_;
-  std::filesystem::path said_;  ///< what ffmpeg says
   pid_t child_ = -1;
   int pipe_ = -1;
+  int said_ = -1;  ///< what ffmpeg says, in memory: a full disk takes no log either
 };
 
 }  // namespace footlight::app

@@ -24,8 +24,9 @@ struct CollectedStations {
   StageCount count;  ///< of sections
 };
 
-/// The formations of a whole show, taken from the stages where they are known. Films that may begin where it is best are
-/// planned at the same time, as if nobody had been anywhere before; those that cannot be reached so are planned again.
+/// The formations of a whole show, taken from the stages where they are known. Films that may begin where it is best
+/// are planned at the same time, as if nobody had been anywhere before; those that cannot be reached so are planned
+/// again.
 /// @return as `plan_section` and `apply_overrides`
 [[nodiscard]] Result<CollectedStations> collect_stations(const StationsTask& task, const Progress& progress);
 

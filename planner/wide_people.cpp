@@ -27,9 +27,7 @@ WidePeople::WidePeople(const Show& show) : show_(show), clearance_m_(show.stage.
 
 double WidePeople::widest_m() const { return widest_ ? show_.performers[widest_->at()].radius_m : 0; }
 
-double WidePeople::widest_two_m() const {
-  return second_ ? widest_m() + show_.performers[second_->at()].radius_m : 0;
-}
+double WidePeople::widest_two_m() const { return second_ ? widest_m() + show_.performers[second_->at()].radius_m : 0; }
 
 std::string WidePeople::widest_two() const {
   const Performer& one = show_.performers[widest_->at()];

@@ -30,6 +30,7 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"opencv2/": r"^config/media/|^config/decode|^planner/",
     r"cairo": r"^app/paper/",
     r"pango": r"^app/paper/",
+    r"qrencode": r"^app/paper/qr_code\.cpp",
     r"CLI/": r"^app/",
 }
 

@@ -76,6 +76,8 @@ class Canvas {
   [[nodiscard]] double width_of(const std::string& words, double size, bool bold = false) const;
   /// The words as they fit into the width: whole, the first word, its beginning, or nothing.
   [[nodiscard]] std::string shortened(const std::string& words, double size, double width) const;
+  /// The words as they fit into the width: whole, their beginning and an ellipsis, or nothing.
+  [[nodiscard]] std::string beginning(const std::string& words, double size, double width) const;
   /// Words broken into lines of at most this width. @param top_left of the first line  @return the height taken
   double paragraph(const std::string& words, Point top_left, double width, double size, Ink colour, bool bold = false);
   [[nodiscard]] double height_of(const std::string& words, double width, double size, bool bold = false) const;

@@ -29,8 +29,10 @@ void Flow::page() {
   canvas_.text(canvas_.shortened(title_, 2 * size, width()), {left, paper_.margin_pt + 2 * size}, 2 * size, kInk, 0,
                true);
   const double foot = paper_.height_pt - paper_.margin_pt;
-  canvas_.text(stamp_.line(), {left, foot}, kFootPt, kFaint, 0);
-  canvas_.text(std::to_string(pages_), {left + width(), foot}, kFootPt, kFaint, 1);
+  const std::string page = std::to_string(pages_);
+  const double room = width() - canvas_.width_of(page, kFootPt) - kGap;
+  canvas_.text(stamp_.line_of(canvas_, kFootPt, room), {left, foot}, kFootPt, kFaint, 0);
+  canvas_.text(page, {left + width(), foot}, kFootPt, kFaint, 1);
   y_ = paper_.margin_pt + 3.6 * size;
 }
 

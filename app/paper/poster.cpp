@@ -44,8 +44,9 @@ class Poster {
     // No smaller than the page allows when one page is enough.
     scale_ = std::max(cell_pt / grid_.pitch_m(), std::min(room_.x / width_m, room_.y / height_m));
     scale_ = std::min(scale_, std::max(cell_pt, kLargestCell_pt) / grid_.pitch_m());
-    across_ = std::max(1, static_cast<int>(std::ceil(width_m * scale_ / room_.x - 1e-9)));
-    up_ = std::max(1, static_cast<int>(std::ceil(height_m * scale_ / room_.y - 1e-9)));
+    const Point step = centre_step(grid_);
+    across_ = pages_for(width_m, step.x, room_.x, tile_m_.x);
+    up_ = pages_for(height_m, step.y, room_.y, tile_m_.y);
   }
 
   void draw(const DrawCell& draw_cell) {
@@ -63,15 +64,34 @@ class Poster {
   }
 
  private:
+  /// From one column to the next, and from one row to the next.
+  static Point centre_step(const Grid& grid) {
+    const Point first = grid.centre(Cell{0, 0});
+    const double x = grid.columns() > 1 ? grid.centre(Cell{1, 0}).x - first.x : grid.pitch_m();
+    const double y = grid.rows() > 1 ? grid.centre(Cell{0, grid.rows() - 1}).y - first.y : grid.pitch_m();
+    return {x, y / std::max(1, grid.rows() - 1)};
+  }
+
+  /// How many tiles of whole columns, or rows, are as long as the floor; each about as large as the others.
+  [[nodiscard]] int pages_for(double length_m, double step_m, double room_pt, double& tile_m) const {
+    tile_m = length_m;
+    if (length_m * scale_ <= room_pt * (1 + 1e-9)) return 1;
+    const auto steps = static_cast<int>(std::ceil(length_m / step_m - 1e-9));
+    const int most = std::max(1, static_cast<int>(std::floor(room_pt / (step_m * scale_))));
+    const int pages = (steps + most - 1) / most;
+    tile_m = (steps + pages - 1) / pages * step_m;
+    return pages;
+  }
+
   static std::string tile_name(int column, int row) { return cell_name({column, row}); }
 
   void heading(const std::string& words) {
     const double left = paper_.margin_pt;
     const double width = paper_.width_pt - 2 * left;
     canvas_.text(words, {left + width, left + 9}, 9, kOnPaper.text, 1, true);
-    canvas_.text(canvas_.shortened(title_, 9, width - canvas_.width_of(words, 9, true) - 8), {left, left + 9}, 9,
+    canvas_.text(canvas_.beginning(title_, 9, width - canvas_.width_of(words, 9, true) - 8), {left, left + 9}, 9,
                  kOnPaper.text, 0);
-    canvas_.text(stamp_.line(), {left, left + 18}, 5.5, kOnPaper.faint, 0);
+    canvas_.text(stamp_.line_of(canvas_, 5.5, width), {left, left + 18}, 5.5, kOnPaper.faint, 0);
   }
 
   /// The whole floor small, and how it is cut.
@@ -94,8 +114,8 @@ class Poster {
       for (int column = 0; column < across_; ++column) {
         const Point low = corner_of(column, row);
         const Point a = frame.at(low);
-        const double width = std::min(room_.x / scale_, frame.high.x - low.x) * frame.scale;
-        const double height = std::min(room_.y / scale_, frame.high.y - low.y) * frame.scale;
+        const double width = std::min(tile_m_.x, frame.high.x - low.x) * frame.scale;
+        const double height = std::min(tile_m_.y, frame.high.y - low.y) * frame.scale;
         canvas_.ink(kOnPaper.refused);
         canvas_.stroke_box({a.x, a.y - height}, width, height, 0.8);
         canvas_.text(tile_name(column, row), {a.x + width / 2, a.y - height / 2 + 5}, 14, kOnPaper.refused, 0.5, true);
@@ -105,15 +125,15 @@ class Poster {
 
   /// Downstage right corner of a tile, m.
   [[nodiscard]] Point corner_of(int column, int row) const {
-    return whole_.low + Point{column * room_.x / scale_, row * room_.y / scale_};
+    return whole_.low + Point{column * tile_m_.x, row * tile_m_.y};
   }
 
   void tile(int column, int row, const DrawCell& draw_cell) {
     heading(across_ * up_ > 1 ? "page " + tile_name(column, row) : "");
     const Point low = corner_of(column, row);
     const Point corner{paper_.margin_pt + kEdge_pt, paper_.margin_pt + kEdge_pt + kHeading_pt};
-    const double width = std::min(room_.x, (whole_.high.x - low.x) * scale_);
-    const double height = std::min(room_.y, (whole_.high.y - low.y) * scale_);
+    const double width = std::min(tile_m_.x, whole_.high.x - low.x) * scale_;
+    const double height = std::min(tile_m_.y, whole_.high.y - low.y) * scale_;
     Frame frame = whole_;
     frame.scale = scale_;
     frame.corner = {corner.x - (low.x - whole_.low.x) * scale_, corner.y + height - (whole_.high.y - low.y) * scale_};
@@ -128,11 +148,17 @@ class Poster {
                         at.y < corner.y + height + cell;
       if (!here) continue;
       outline(frame, CellIndex::of(i));
-      draw_cell(CellIndex::of(i), at, cell);
     }
     canvas_.ink(kOnPaper.centre_line);
     canvas_.stroke_line(frame.at({0, frame.low.y}), frame.at({0, frame.high.y}), 0.8);
     cairo_restore(c);
+    // What belongs to a cell stands whole on the tile that has the cell's middle, also where a staggered row's cells
+    // reach over the edge.
+    for (int i = 0; i < grid_.size(); ++i) {
+      const Point at = frame.at(grid_.centre(CellIndex::of(i)));
+      const bool mine = at.x >= corner.x && at.x < corner.x + width && at.y > corner.y && at.y <= corner.y + height;
+      if (mine) draw_cell(CellIndex::of(i), at, cell);
+    }
     edges(frame, corner, width, height);
   }
 
@@ -155,18 +181,20 @@ class Poster {
 
   /// Cut marks, letters and numbers around a tile.
   void edges(const Frame& frame, Point corner, double width, double height) {
+    // Names of cells in the middle of the edge reach half a cell beyond it.
+    const double beyond = grid_.kind() == GridKind::square ? 0 : 0.5 * scale_ * grid_.pitch_m();
     canvas_.ink(kOnPaper.text);
     canvas_.stroke_box(corner, width, height, 0.6);
     for (int column = 0; column < grid_.columns(); ++column) {
       const double x = frame.at(grid_.centre(Cell{column, 0})).x;
       if (x < corner.x || x > corner.x + width) continue;
       const std::string name = cell_name({column, 0});
-      canvas_.text(name.substr(0, name.size() - 1), {x, corner.y + height + 8}, 5.5, kOnPaper.faint, 0.5);
+      canvas_.text(name.substr(0, name.size() - 1), {x, corner.y + height + beyond + 8}, 5.5, kOnPaper.faint, 0.5);
     }
     for (int row = 0; row < grid_.rows(); ++row) {
       const double y = frame.at(grid_.centre(Cell{0, row})).y;
       if (y < corner.y || y > corner.y + height) continue;
-      canvas_.text(std::to_string(row + 1), {corner.x - 3, y + 2}, 5.5, kOnPaper.faint, 1);
+      canvas_.text(std::to_string(row + 1), {corner.x - beyond - 3, y + 2}, 5.5, kOnPaper.faint, 1);
     }
   }
 
@@ -177,7 +205,8 @@ class Poster {
   const Grid& grid_;
   std::string title_;
   Frame whole_;
-  Point room_;  ///< of a tile on paper
+  Point room_;    ///< of a tile on paper
+  Point tile_m_;  ///< size of a tile
   double scale_ = 1;
   int across_ = 1;
   int up_ = 1;

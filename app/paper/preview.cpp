@@ -84,6 +84,34 @@ void Preview::ground_from_audience(Canvas& canvas, SectionIndex section) const {
   canvas.stroke_line(view_.at({0, frame.low.y}), view_.at({0, frame.high.y}), 1);
 }
 
+void Preview::film_from_audience(Canvas& canvas, const Mask& picture, const StageToFrame& m) const {
+  const Frame& frame = view_.frame();
+  const double area = m[0] * m[4] - m[1] * m[3];
+  // From the film's pixels to metres, no farther than the floor's edges: what lies behind the eye has no place.
+  const auto at = [&](int x, int y) {
+    const double u = x - m[2];
+    const double v = y - m[5];
+    const Point floor{(m[4] * u - m[1] * v) / area, (m[0] * v - m[3] * u) / area};
+    return view_.at({std::clamp(floor.x, frame.low.x, frame.high.x), std::clamp(floor.y, frame.low.y, frame.high.y)});
+  };
+  cairo_t* c = canvas.cairo();
+  // All runs of pixels are one path: where two touch there is no seam.
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (!picture.at(x, y)) continue;
+      const int first = x;
+      while (x < picture.width() && picture.at(x, y)) ++x;
+      cairo_new_sub_path(c);
+      for (const Point corner : {at(first, y), at(x, y), at(x, y + 1), at(first, y + 1)}) {
+        cairo_line_to(c, corner.x, corner.y);
+      }
+      cairo_close_path(c);
+    }
+  }
+  canvas.ink(kOnScreen.film);
+  cairo_fill(c);
+}
+
 Ink Preview::colour_of(std::size_t performer, Point at, SectionIndex section, const Mask* picture) const {
   const bool waits = reserve_[section.at()][plan_.stage.grid.nearest(at).at()];
   const double alpha = waits ? kWaiting : 1;
@@ -103,6 +131,8 @@ void Preview::draw_people(Canvas& canvas, Instant instant) const {
   if (picture != nullptr && style_.seat == Seat::above) {
     const DrawnFloor floor(canvas, view_.frame(), plan_.stage, kOnScreen);
     floor.film(*picture, films_[section.at()].placement());
+  } else if (picture != nullptr) {
+    film_from_audience(canvas, *picture, films_[section.at()].placement());
   }
   std::vector<std::pair<double, Capsule>> people;
   people.reserve(plan_.tracks.size());
@@ -140,9 +170,12 @@ void PreviewFrame::draw_still(Canvas& canvas, SectionIndex section) const {
   canvas.ink(kOnScreen.ground);
   canvas.fill_box({0, 0}, canvas.width(), canvas.height());
   preview_.draw_ground(canvas, section);
-  canvas.text(stamp_.title + "   " + plan_.sections[section.at()].name, {words_, 1.5 * words_}, words_, kOnScreen.text,
-              0, true);
-  canvas.text(stamp_.line(), {words_, canvas.height() - 0.6 * words_}, 0.7 * words_,
+  const double room = canvas.width() - 2 * words_;
+  constexpr double kCountRoom = 16;  // of the count on the right, in sizes of words; bold letters are wider
+  const double title_room = 0.85 * (room - kCountRoom * words_);
+  canvas.text(canvas.beginning(stamp_.title + "   " + plan_.sections[section.at()].name, words_, title_room),
+              {words_, 1.5 * words_}, words_, kOnScreen.text, 0, true);
+  canvas.text(stamp_.line_of(canvas, 0.7 * words_, room), {words_, canvas.height() - 0.6 * words_}, 0.7 * words_,
               stamp_.valid ? kOnScreen.faint : kOnScreen.refused, 0);
 }
 
@@ -181,8 +214,10 @@ void draw_contact_sheet(Canvas& canvas, const Plan& plan, const Show& show, cons
   const double words = words_size(canvas.height());
   canvas.ink(kOnScreen.ground);
   canvas.fill_box({0, 0}, canvas.width(), canvas.height());
-  canvas.text(stamp.title, {words, 1.5 * words}, words, kOnScreen.text, 0, true);
-  canvas.text(stamp.line(), {words, canvas.height() - 0.6 * words}, 0.7 * words, kOnScreen.faint, 0);
+  const double room = canvas.width() - 2 * words;
+  canvas.text(canvas.beginning(stamp.title, words, 0.85 * room), {words, 1.5 * words}, words, kOnScreen.text, 0, true);
+  canvas.text(stamp.line_of(canvas, 0.7 * words, room), {words, canvas.height() - 0.6 * words}, 0.7 * words,
+              kOnScreen.faint, 0);
   if (shown.empty()) return;
   const double width = canvas.width() - 2 * words;
   const double height = canvas.height() - 4 * words;

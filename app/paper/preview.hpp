@@ -41,6 +41,7 @@ class Preview {
 
  private:
   void ground_from_audience(Canvas& canvas, SectionIndex section) const;
+  void film_from_audience(Canvas& canvas, const Mask& picture, const StageToFrame& placement) const;
   [[nodiscard]] Ink colour_of(std::size_t performer, Point at, SectionIndex section, const Mask* picture) const;
 
   const Plan& plan_;

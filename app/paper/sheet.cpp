@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "app/paper/drawn_floor.hpp"
+#include "app/paper/qr_code.hpp"
+#include "app/paper/way_map.hpp"
 
 namespace footlight::app {
 namespace {
@@ -118,7 +120,7 @@ std::vector<std::size_t> Sheets::break_rows(const std::vector<double>& heights) 
   return out;
 }
 
-void Sheets::draw(Canvas& canvas, PerformerIndex who, const Part& part) {
+void Sheets::draw(Canvas& canvas, PerformerIndex who, const Part& part, const std::string& code) {
   const std::vector<SheetRow> rows = words_.rows_of(part);
   const std::string digits = digits_of(rows);
   std::vector<double> heights;
@@ -130,13 +132,13 @@ void Sheets::draw(Canvas& canvas, PerformerIndex who, const Part& part) {
     const std::string page = breaks.size() == 1 ? ""
                                                 : say(format_.words.language, Word::page_of, fmt::arg("page", k + 1),
                                                       fmt::arg("pages", breaks.size()));
-    double y = heading(canvas, card, who, k == 0 ? part : Part{}, page);
+    double y = k == 0 ? heading(canvas, card, who, part, code) : heading_of_more(canvas, card, who, page);
     const std::size_t end = k + 1 < breaks.size() ? breaks[k + 1] : rows.size();
     for (std::size_t i = breaks[k]; i < end; ++i) {
       row(canvas, {card.corner.x, y}, rows[i]);
       const double top = y + (rows[i].cue.empty() ? 0 : 2 * format_.paper.words_pt);
-      way_map(canvas, {card.corner.x + card.width - columns_.map, top + kRowGap / 2}, columns_.map, part, i,
-              colour_of(who));
+      draw_way_map(canvas, {card.corner.x + card.width - columns_.map, top + kRowGap / 2}, columns_.map,
+                   plan_.stage.grid, part, i, colour_of(who));
       y += heights[i];
     }
     footing(canvas, card, digits, page);
@@ -144,37 +146,46 @@ void Sheets::draw(Canvas& canvas, PerformerIndex who, const Part& part) {
 }
 
 double Sheets::heading(Canvas& canvas, const Card& card, PerformerIndex who, const Part& part,
-                       const std::string& page) const {
+                       const std::string& code) const {
   const double size = format_.paper.words_pt;
   const Performer& performer = show_.performers.at(who.at());
-  const Language language = format_.words.language;
   const Point at = card.corner;
-  const std::string id = performer.id == performer.name ? "" : "  " + performer.id;
-  double y = at.y;
-  if (part.empty()) {  // a page that goes on
-    canvas.text(canvas.shortened(performer.name, 1.5 * size, 0.7 * card.width), {at.x, y + 1.5 * size}, 1.5 * size,
-                kInk, 0, true);
-    y += 2.4 * size;
-  } else {
-    const double map_width = std::min(0.30 * card.width, 14 * size);
-    const double room = card.width - map_width - kGap;
-    const std::string name = canvas.shortened(performer.name, 2.6 * size, 0.9 * room);
-    canvas.text(name, {at.x, y + 2.3 * size}, 2.4 * size, kInk, 0, true);
-    canvas.text(canvas.shortened(stamp_.title + id, size, room), {at.x, y + 3.9 * size}, size, kFaint, 0);
-    if (performer.group) {
-      canvas.ink(colour_of(who));
-      canvas.fill_box({at.x, y + 4.6 * size}, size, size);
-      canvas.ink(kInk);
-      canvas.stroke_box({at.x, y + 4.6 * size}, size, size, 0.4);
-      canvas.text(say(language, Word::group, fmt::arg("name", show_.groups.at(performer.group->at()).name)),
-                  {at.x + 1.6 * size, y + 5.5 * size}, size, kFaint, 0);
-    }
-    floor_map(canvas, {at.x + card.width - map_width, y}, map_width, 6.2 * size, part, colour_of(who));
-    y += 6.6 * size;
+  const double height = 6.2 * size;
+  const double map_width = std::min(0.30 * card.width, 14 * size);
+  double room = card.width - map_width - kGap;
+  draw_floor_map(canvas, {at.x + card.width - map_width, at.y}, map_width, height, plan_.stage.grid, part,
+                 colour_of(who));
+  if (const auto square = qr_code(code)) {
+    room -= height + kGap;
+    draw_code(canvas, {at.x + room + kGap / 2, at.y}, height, *square);
   }
-  if (!page.empty() && part.empty()) canvas.text(page, {at.x + card.width, y - 0.9 * size}, size, kFaint, 1);
-  column_names(canvas, {at.x, y});
-  return y + 1.8 * size;
+  const std::string name = canvas.shortened(performer.name, 2.6 * size, 0.9 * room);
+  canvas.text(name, {at.x, at.y + 2.3 * size}, 2.4 * size, kInk, 0, true);
+  const std::string id = performer.id == performer.name ? "" : "  " + performer.id;
+  canvas.text(canvas.beginning(stamp_.title + id, size, room), {at.x, at.y + 3.9 * size}, size, kFaint, 0);
+  if (performer.group) {
+    canvas.ink(colour_of(who));
+    canvas.fill_box({at.x, at.y + 4.6 * size}, size, size);
+    canvas.ink(kInk);
+    canvas.stroke_box({at.x, at.y + 4.6 * size}, size, size, 0.4);
+    const std::string group =
+        say(format_.words.language, Word::group, fmt::arg("name", show_.groups.at(performer.group->at()).name));
+    canvas.text(canvas.shortened(group, size, room - 1.6 * size), {at.x + 1.6 * size, at.y + 5.5 * size}, size, kFaint,
+                0);
+  }
+  column_names(canvas, {at.x, at.y + 6.6 * size});
+  return at.y + 8.4 * size;
+}
+
+/// Of a page that goes on.
+double Sheets::heading_of_more(Canvas& canvas, const Card& card, PerformerIndex who, const std::string& page) const {
+  const double size = format_.paper.words_pt;
+  const Point at = card.corner;
+  canvas.text(canvas.shortened(show_.performers.at(who.at()).name, 1.5 * size, 0.7 * card.width),
+              {at.x, at.y + 1.5 * size}, 1.5 * size, kInk, 0, true);
+  canvas.text(page, {at.x + card.width, at.y + 1.5 * size}, size, kFaint, 1);
+  column_names(canvas, {at.x, at.y + 2.4 * size});
+  return at.y + 4.2 * size;
 }
 
 void Sheets::column_names(Canvas& canvas, Point at) const {
@@ -234,71 +245,11 @@ void Sheets::footing(Canvas& canvas, const Card& card, const std::string& digits
   const std::string legend =
       say(language, Word::legend, fmt::arg("cm", fmt::format("{:g}", 100 * format_.words.step_m)),
           fmt::arg("beats", show_.tempo.beats_per_measure()));
-  canvas.paragraph(joined(legend + "\n" + stamp_.line() + "   part " + digits, page, "   "), {card.corner.x, top},
-                   card.width, stamp_.valid ? kFootPt : kFootPt + 1, stamp_.valid ? kFaint : kOnPaper.refused);
-}
-
-/// Where she came from, is, and goes to, and who is beside her; downstage below.
-void Sheets::way_map(Canvas& canvas, Point corner, double size, const Part& part, std::size_t i, Ink colour) const {
-  const Grid& grid = plan_.stage.grid;
-  const Point here = grid.centre(part[i].cell);
-  const Point before = i > 0 ? grid.centre(part[i - 1].cell) : here;
-  const Point next = i + 1 < part.size() ? grid.centre(part[i + 1].cell) : here;
-  const auto [left, right] = std::minmax({here.x, before.x, next.x});
-  const auto [low, high] = std::minmax({here.y, before.y, next.y});
-  const Point middle{(left + right) / 2, (low + high) / 2};
-  const double half = std::max(2.5 * grid.pitch_m(), 0.62 * std::max(right - left, high - low));
-  const double scale = size / (2 * half);
-  const auto at = [&](Point p) {
-    return Point{corner.x + size / 2 + (p.x - middle.x) * scale, corner.y + size / 2 - (p.y - middle.y) * scale};
-  };
-  cairo_t* c = canvas.cairo();
-  cairo_save(c);
-  cairo_rectangle(c, corner.x, corner.y, size, size);
-  cairo_clip(c);
-  canvas.ink(kOnPaper.centre_line);
-  canvas.stroke_line(at({0, middle.y - half}), at({0, middle.y + half}), 0.4);
-  canvas.ink(kHair);  // the downstage edge
-  canvas.stroke_line(at({middle.x - half, 0}), at({middle.x + half, 0}), 0.8);
-  canvas.ink(kFaint);
-  if (i > 0) {
-    canvas.stroke_line(at(before), at(here), 0.4);
-    canvas.ring(at(before), 1.8, 0.6);
-  }
-  canvas.ink(kInk);
-  if (i + 1 < part.size()) {
-    canvas.stroke_line(at(here), at(next), 1);
-    canvas.arrow_head(at(here), at(next), 4.5);
-  }
-  canvas.disc(at(here), 2.6);
-  canvas.ink(colour);
-  canvas.disc(at(here), 1.9);
-  cairo_restore(c);
-  canvas.ink(kHair);
-  canvas.stroke_box(corner, size, size, 0.3);
-}
-
-/// The way through the whole show on the whole floor.
-void Sheets::floor_map(Canvas& canvas, Point corner, double width, double height, const Part& part, Ink colour) const {
-  const Grid& grid = plan_.stage.grid;
-  Frame frame(grid, corner, width, height);
-  frame.corner.x += width - frame.width();
-  canvas.ink(kInk);
-  canvas.stroke_box(frame.corner, frame.width(), frame.height(), 0.5);
-  canvas.ink(kOnPaper.centre_line);
-  canvas.stroke_line(frame.at({0, frame.low.y}), frame.at({0, frame.high.y}), 0.4);
-  cairo_t* c = canvas.cairo();
-  for (const Place& place : part) {
-    const Point at = frame.at(grid.centre(place.cell));
-    cairo_line_to(c, at.x, at.y);
-  }
-  canvas.ink(kInk);
-  cairo_set_line_width(c, 0.5);
-  cairo_stroke(c);
-  canvas.ring(frame.at(grid.centre(part.front().cell)), 2, 0.6);
-  canvas.disc(frame.at(grid.centre(part.back().cell)), 2.2);
-  canvas.ink(colour);
-  canvas.disc(frame.at(grid.centre(part.back().cell)), 1.5);
+  const double size = stamp_.valid ? kFootPt : kFootPt + 1;
+  const std::string part = joined("   part " + digits, page, "   ");
+  const std::string stamp = stamp_.line_of(canvas, size, card.width - canvas.width_of(part, size) - 1);
+  canvas.paragraph(legend + "\n" + stamp + part, {card.corner.x, top}, card.width, size,
+                   stamp_.valid ? kFaint : kOnPaper.refused);
 }
 
 }  // namespace footlight::app

@@ -28,7 +28,8 @@ class Sheets {
   /// An empty document of this format's pages.
   [[nodiscard]] Canvas document(const std::string& title) const;
   /// Adds one performer's sheets, beginning on the next free card.
-  void draw(Canvas& canvas, PerformerIndex who, const Part& part);
+  /// @param code  what a QR code beside the name says; empty, or longer than `kMostCodeBytes`: none
+  void draw(Canvas& canvas, PerformerIndex who, const Part& part, const std::string& code = {});
   /// How many pages were begun.
   [[nodiscard]] int pages() const { return (cards_ + format_.a_page - 1) / format_.a_page; }
 
@@ -45,12 +46,11 @@ class Sheets {
   [[nodiscard]] Columns columns() const;
   [[nodiscard]] double height_of(const Canvas& canvas, const SheetRow& row) const;
   [[nodiscard]] std::vector<std::size_t> break_rows(const std::vector<double>& heights) const;
-  double heading(Canvas& canvas, const Card& card, PerformerIndex who, const Part& part, const std::string& page) const;
+  double heading(Canvas& canvas, const Card& card, PerformerIndex who, const Part& part, const std::string& code) const;
+  double heading_of_more(Canvas& canvas, const Card& card, PerformerIndex who, const std::string& page) const;
   void footing(Canvas& canvas, const Card& card, const std::string& digits, const std::string& page) const;
   void column_names(Canvas& canvas, Point at) const;
   void row(Canvas& canvas, Point at, const SheetRow& row) const;
-  void way_map(Canvas& canvas, Point corner, double size, const Part& part, std::size_t place, Ink colour) const;
-  void floor_map(Canvas& canvas, Point corner, double width, double height, const Part& part, Ink colour) const;
   [[nodiscard]] Ink colour_of(PerformerIndex who) const;
 
   const Show& show_;

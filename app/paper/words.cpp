@@ -90,6 +90,13 @@ constexpr std::array kCatalogue = {
     Entry{Word::audience, {"audience", "观众"}},
     Entry{Word::stage_right_side, {"stage right", "舞台右"}},
     Entry{Word::stage_left_side, {"stage left", "舞台左"}},
+    Entry{Word::you, {"you", "你"}},
+    Entry{Word::next_place, {"next place", "下一个位置"}},
+    Entry{Word::place_before, {"place before", "上一个位置"}},
+    Entry{Word::dark_or_light, {"dark or light", "深色或浅色"}},
+    Entry{Word::whole_floor, {"the floor", "全场"}},
+    Entry{Word::your_way, {"your way", "你的路线"}},
+    Entry{Word::and_more, {"and {n} more", "还有 {n} 个"}},
 };
 
 constexpr bool in_order() {

@@ -89,6 +89,13 @@ enum class Word {
   audience,
   stage_right_side,
   stage_left_side,
+  you,
+  next_place,
+  place_before,
+  dark_or_light,
+  whole_floor,
+  your_way,
+  and_more,
   // Keep last.
   number_of_words,
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/paper/stamp.hpp"
 #include "app/plan_diff.hpp"
 #include "tests/support/small_show.hpp"
 #include "tests/support/starter_show.hpp"
@@ -58,6 +59,8 @@ TEST(PlanDiff, TellsWhoStandsElsewhereAndWhoCameAndLeft) {
   const auto json = nlohmann::json::parse(diff_json(diff));
   EXPECT_EQ(json["changed"], nlohmann::json({"2", "5"}));
   EXPECT_EQ(json["formations"][0]["displaced"], 2);
+  EXPECT_EQ(json["old"]["plan"], app::Stamp(before).plan);
+  EXPECT_EQ(json["new"]["plan"], app::Stamp(now).plan);
 }
 
 class DiffCommand : public test::StarterShow {};

@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "app/paper/preview.hpp"
 #include "config/plan_file.hpp"
@@ -25,15 +26,7 @@ constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 constexpr double kRate = 5;
 
-class PreviewCommand : public test::StarterShow {
- protected:
-  PreviewCommand() {
-    EXPECT_EQ(footlight({"plan", show_, "-q"}).status, 0);
-    made_ = files();
-  }
-  void expect_no_half_file() const { EXPECT_EQ(files(), made_); }
-  Names made_;
-};
+class PreviewCommand : public test::PlannedStarterShow {};
 
 /// Middles of the coloured blobs of a frame, red, green and blue by turns.
 std::vector<Point> dots_in(const std::string& frame) {
@@ -83,9 +76,22 @@ TEST_F(PreviewCommand, FirstMiddleAndLastFrameHaveEverybodyInPlace) {
   const Plan plan = config::load_plan(plan_).value();
   const double last_s = to_seconds(plan.sections.back().end);
   ASSERT_EQ(frames, static_cast<std::size_t>(std::floor(last_s * kRate + 1e-9)) + 1);
+  // The groups' colours, as another program decodes them: #FF69B4 and #00A0FF.
+  const auto pixel_at = [&](Point at) {
+    const std::size_t i = 3 * (static_cast<std::size_t>(at.y) * kWidth + static_cast<std::size_t>(at.x));
+    return std::vector<int>{static_cast<unsigned char>(raw[i]), static_cast<unsigned char>(raw[i + 1]),
+                            static_cast<unsigned char>(raw[i + 2])};
+  };
   const app::Stamp stamp(plan);
   Show show;
   const app::PreviewFrame drawn(plan, show, stamp, {}, {}, kWidth, kHeight);
+  const auto looks_like = [&](std::size_t who, const std::vector<int>& colour) {
+    const std::vector<int> seen =
+        pixel_at(drawn.preview().view().at(position_at(plan.stage.grid, plan.tracks[who], kStart)));
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], colour[c], 8) << "performer " << who << ", channel " << c;
+  };
+  looks_like(0, {0xFF, 0x69, 0xB4});
+  looks_like(11, {0x00, 0xA0, 0xFF});
   for (const std::size_t frame : {std::size_t{0}, frames / 2, frames - 1}) {
     const std::vector<Point> dots = dots_in(raw.substr(frame * kBytes, kBytes));
     EXPECT_EQ(dots.size(), 12U) << "frame " << frame;
@@ -108,6 +114,21 @@ TEST_F(PreviewCommand, DrawsPicturesAsPngAndSvg) {
   const Ran again = footlight({"preview", show_, "-o", folder_ / "b.svg", "--contact-sheet", "--size", "800x600"});
   EXPECT_EQ(again.status, 0);
   EXPECT_EQ(folder_.read("a.svg"), folder_.read("b.svg"));
+}
+
+TEST_F(PreviewCommand, SaysAsJsonWhatItWrote) {
+  const Ran film = footlight({"preview", show_, "-o", folder_ / "a.mp4", "--size", "64x64", "--rate", "2", "--from",
+                              "9", "--to", "19", "--json"});
+  ASSERT_EQ(film.status, 0) << film.err;
+  const auto told = nlohmann::json::parse(film.out);
+  EXPECT_EQ(told["files"], nlohmann::json{folder_ / "a.mp4"});
+  EXPECT_EQ(told["plan"], app::Stamp(config::load_plan(plan_).value()).plan);
+  EXPECT_EQ(told["frames"], 13) << "six seconds of ten counts";
+  EXPECT_NEAR(told["from_s"].get<double>(), 4.8, 1e-9);
+  const auto picture =
+      nlohmann::json::parse(footlight({"preview", show_, "-o", folder_ / "a.png", "--at", "9", "--json"}).out);
+  EXPECT_NEAR(picture["at_s"].get<double>(), 4.8, 1e-9);
+  EXPECT_FALSE(picture.contains("frames"));
 }
 
 TEST_F(PreviewCommand, SaysWhatIsWrongAndLeavesNothing) {
@@ -150,11 +171,26 @@ TEST_F(PreviewCommand, AFullDiskIsToldAndLeavesNoHalfFile) {
   expect_no_half_file();
 }
 
+TEST_F(PreviewCommand, ADiskThatFillsUpIsNamed) {
+  const std::string disk = folder_ / "disk";
+  std::filesystem::create_directory(disk);
+  const std::string mount = "mount -t tmpfs -o size=64k tmpfs " + disk;
+  if (test::run_program({"unshare", "-rm", "sh", "-c", mount}).status != 0) GTEST_SKIP() << "no disk can be made here";
+  const Ran ran =
+      test::run_program({"unshare", "-rm", "sh", "-c", mount + " && \"$0\" \"$@\"; s=$?; ls -A " + disk + "; exit $s",
+                         FOOTLIGHT_PROGRAM, "preview", show_, "--rate", "10", "-o", disk + "/x.mp4"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("cannot write '" + disk + "/x.mp4': ffmpeg: "));
+  EXPECT_THAT(ran.err, HasSubstr("No space left on device"));
+  EXPECT_EQ(ran.out, "") << "no half file";
+}
+
 TEST_F(PreviewCommand, AnInterruptionLeavesNothing) {
   const Ran ran = test::run_program(
       {FOOTLIGHT_PROGRAM, "preview", show_, "-o", folder_ / "s/x.mp4", "--size", "3840x2160", "--rate", "120"}, {},
       [&](pid_t pid) {
-        const auto begun = [&] { return files() != made_; };
+        const Names before = files();
+        const auto begun = [&] { return files() != before; };
         for (int i = 0; i < 2000 && !begun(); ++i) usleep(5000);
         kill(pid, SIGINT);
       });

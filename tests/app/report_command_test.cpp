@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/starter_show.hpp"
 
 namespace footlight {
 namespace {
 
+using nlohmann::json;
 using test::footlight;
 using test::Ran;
 using ::testing::EndsWith;
@@ -30,6 +33,33 @@ TEST_F(ReportCommand, IsOnePageThatNeedsNothingElse) {
   EXPECT_FALSE(std::regex_search(page, outside)) << "no network";
   const Ran again = footlight({"report", show_, "-o", folder_ / "again.html"});
   EXPECT_EQ(folder_.read("again.html"), page) << "the same plan gives the same bytes";
+}
+
+TEST_F(ReportCommand, ItsFiguresAreThoseOfOtherCommands) {
+  ASSERT_EQ(footlight({"plan", show_, "-q"}).status, 0);
+  const Ran ran = footlight({"report", show_, "--json"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json report = json::parse(ran.out);
+  const json measured = json::parse(footlight({"measure", show_, "--json"}).out);
+  EXPECT_EQ(report["title"], "Twelve");
+  EXPECT_EQ(report["files"], json::array());
+  EXPECT_EQ(report["performers"].size(), 12U);
+  EXPECT_EQ(report["all"]["min_clearance_m"], measured["min_clearance_m"]);
+  EXPECT_EQ(report["all"]["theta_dev"], nullptr) << "cells have no picture";
+  EXPECT_EQ(report["sections"][1]["name"], "ring");
+  double walked = 0;
+  for (const json& way : report["ways"]["walked_m"]) walked += way.get<double>();
+  EXPECT_NEAR(walked, measured["total_distance_m"].get<double>(), 1e-6);
+  const auto& least = report["clearance"]["least_m"];
+  EXPECT_NEAR(*std::min_element(least.begin(), least.end()), report["all"]["min_clearance_m"].get<double>(), 1e-9);
+  for (const char* list : {"I_d_bits", "I_v_bits", "sigma_min_dis_m", "sigma_curr_eft_m"}) {
+    EXPECT_EQ(report["crowd"][list].size(), report["crowd"]["time_s"].size()) << list;
+  }
+  EXPECT_EQ(report["buses_missing"], nullptr);
+  ASSERT_FALSE(report["buses"].empty());
+  EXPECT_GT(report["buses"][0]["load"], 0);
+  EXPECT_EQ(report["dark"], json::parse(footlight({"dark", show_, "--json"}).out));
+  EXPECT_EQ(footlight({"report", show_}).err, "error: say what to write: -o FILE.html, or --json\n");
 }
 
 TEST_F(ReportCommand, SaysWhatIsWrongAndLeavesNothing) {

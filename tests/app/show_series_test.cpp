@@ -54,6 +54,23 @@ TEST(CrowdSeries, WhoAllWalkOneWayTellNothingOfTheirPlace) {
   EXPECT_DOUBLE_EQ(torn.information[1], 0.5);
 }
 
+TEST(CrowdSeries, PlacesTellHowFastPeopleWalkWhereOneSideHurries) {
+  const Grid grid = *Grid::make(GridKind::square, 20, 10, 1);
+  std::vector<std::vector<Mark>> even;
+  std::vector<std::vector<Mark>> hurried;
+  for (int row = 0; row < 10; row += 2) {
+    for (const int column : {2, 15}) {
+      even.push_back({mark_at(0, grid, column, row), mark_at(4, grid, column + 1, row)});
+      hurried.push_back({mark_at(0, grid, column, row), mark_at(4, grid, column == 2 ? 3 : 19, row)});
+    }
+  }
+  EXPECT_DOUBLE_EQ(crowd_series(plan_with_section(grid, even, 4), 1).pace_information[1], 0);
+  const CrowdSeries series = crowd_series(plan_with_section(grid, hurried, 4), 1);
+  EXPECT_DOUBLE_EQ(series.pace_information[1], 0.5) << "x says the speed (1 bit), y nothing";
+  EXPECT_DOUBLE_EQ(series.information[1], 0) << "all go the same way";
+  EXPECT_TRUE(std::isnan(series.pace_information[4]));
+}
+
 TEST(CrowdSeries, SigmasAreOfXusEquations24And26) {
   const Grid grid = *Grid::make(GridKind::square, 20, 10, 1);
   // Three people: nearest 1, 1 and 6 m; ways of 0, 0 and 2 m after two of four seconds.
@@ -110,6 +127,22 @@ TEST(DrawingSeries, ItsMeanIsWhatMeasureSays) {
   }
   EXPECT_NEAR(dev, measured.theta_dev.value(), 1e-9);
   EXPECT_NEAR(miss, measured.theta_miss.value(), 1e-9);
+}
+
+TEST(DrawingSeries, OfAnImageLastsAsLongAsItsSection) {
+  tests::SmallShow cast = tests::random_show(20, 10, 20, 1, 3, 5);
+  FilmPlacement placement;
+  placement.width = 40;
+  placement.height = 20;
+  placement.stage_to_frame = {2, 0, 20, 0, -2, 20};
+  cast.plan.sections[0].film = placement;
+  const DrawingSeries series =
+      drawing_series(cast.plan, {tests::film_of(1, [](int) { return tests::disc(40, 20, 20, 10, 6); })});
+  ASSERT_EQ(series.time_s.size(), 2U);
+  EXPECT_EQ(series.time_s[0], to_seconds(cast.plan.sections[0].start));
+  EXPECT_EQ(series.time_s[1], to_seconds(cast.plan.sections[0].end));
+  EXPECT_EQ(series.miss[0], series.miss[1]);
+  EXPECT_GT(series.miss[0], 0);
 }
 
 TEST(WayFigures, AddUpToWhatMeasureSays) {

@@ -47,4 +47,19 @@ class StarterShow : public ::testing::Test {
   Names as_made_;
 };
 
+/// The same, planned already.
+class PlannedStarterShow : public StarterShow {
+ protected:
+  PlannedStarterShow() { plan(); }
+  void plan() {
+    EXPECT_EQ(footlight({"plan", show_, "-q"}).status, 0);
+    made_ = files();
+  }
+  /// Nothing else than before is beside the show.
+  void expect_no_half_file() const { EXPECT_EQ(files(), made_); }
+
+ private:
+  Names made_;
+};
+
 }  // namespace footlight::test

@@ -81,18 +81,26 @@ TEST(Preview, WhoIsOutsideOfTheFilmHasAColourOfItsOwn) {
   placement.stage_to_frame = {1, 0, 10, 0, -1, 10};
   cast.plan.sections[0].film = placement;
   const Stamp stamp(cast.plan);
-  const PreviewFrame frame(cast.plan, cast.show, stamp, {&film}, {Seat::above, true}, kWidth, kHeight);
-  Canvas canvas = Canvas::png(kWidth, kHeight, kOnScreen.ground);
-  frame.draw_still(canvas, SectionIndex(0));
-  frame.draw_moving(canvas, instant_at(1));
-  const View& view = frame.preview().view();
-  const auto inside = pixel(canvas, view.at(grid.centre(Cell{4, 4})));
-  EXPECT_GT(inside[0], 200) << "white";
-  const auto outside = pixel(canvas, view.at(grid.centre(Cell{15, 4})));
-  EXPECT_EQ(outside, (std::array<int, 3>{0, 94, 213})) << "vermilion";
-  const auto shown = pixel(canvas, view.at(grid.centre(Cell{6, 6}) + Point{0.3, 0.3}));
-  const auto dark = pixel(canvas, view.at(grid.centre(Cell{13, 6}) + Point{0.3, 0.3}));
-  EXPECT_GT(shown[0], dark[0] + 20) << "the film lies there";
+  for (const Seat seat : {Seat::above, Seat::audience}) {
+    const PreviewFrame frame(cast.plan, cast.show, stamp, {&film}, {seat, true}, kWidth, kHeight);
+    Canvas canvas = Canvas::png(kWidth, kHeight, kOnScreen.ground);
+    frame.draw_still(canvas, SectionIndex(0));
+    frame.draw_moving(canvas, instant_at(1));
+    const View& view = frame.preview().view();
+    const double chest_m = seat == Seat::above ? 0 : 1;
+    const auto inside = pixel(canvas, view.at(grid.centre(Cell{4, 4}), chest_m));
+    EXPECT_GT(inside[0], 200) << "white";
+    const auto outside = pixel(canvas, view.at(grid.centre(Cell{15, 4}), chest_m));
+    EXPECT_EQ(outside, (std::array<int, 3>{0, 94, 213})) << "vermilion";
+    // The film lies on the left half of the floor, up to its edges; the centre line is between.
+    for (const double y : {0.3, 3.3, 6.6, 9.7}) {
+      for (const double x : {0.3, 2.3, 9.7}) {
+        const auto shown = pixel(canvas, view.at({-x, y}));
+        const auto dark = pixel(canvas, view.at({x, y}));
+        EXPECT_GT(shown[0], dark[0] + 20) << x << " " << y;
+      }
+    }
+  }
 }
 
 TEST(Preview, AContactSheetShowsEveryKeyFormation) {
