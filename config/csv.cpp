@@ -103,7 +103,7 @@ class CsvScanner {
 void check_header(const CsvTable& table, const std::vector<std::string>& columns, Diagnostics& diagnostics) {
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const CsvField& name = table.header[c];
-    if (std::find(columns.begin(), columns.end(), name.text) == columns.end()) {
+    if (!columns.empty() && std::find(columns.begin(), columns.end(), name.text) == columns.end()) {
       diagnostics.error(table.at(name), "", "unknown column " + in_quotes(name.text),
                         suggestion(name.text, columns, "known columns"));
     }

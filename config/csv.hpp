@@ -32,8 +32,8 @@ struct CsvTable {
 
 inline constexpr std::size_t kMaxCsvBytes = std::size_t{64} << 20U;
 
-/// Reads a table. Reports unknown columns (with the nearest of `columns`), columns that stand twice, and rows of
-/// another length than the header; such rows are left out.
+/// Reads a table. Reports unknown columns (with the nearest of `columns`; none: any may stand there), columns that
+/// stand twice, and rows of another length than the header; such rows are left out.
 /// @return nothing when the file has no header or its text is no CSV in UTF-8
 [[nodiscard]] std::optional<CsvTable> parse_csv(std::string_view bytes, const std::string& file,
                                                 const std::vector<std::string>& columns, Diagnostics& diagnostics);

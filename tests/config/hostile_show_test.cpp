@@ -9,6 +9,7 @@
 #include "core/rng.hpp"
 #include "tests/config/show_folder.hpp"
 #include "tests/support/full.hpp"
+#include "tests/support/mutated.hpp"
 
 namespace footlight::config {
 namespace {
@@ -63,29 +64,8 @@ class HostileShow : public testing::Test {
       EXPECT_FALSE(result.error().sorted().front().position.file.empty()) << content;
     }
   }
-  /// One to four bytes changed, removed, doubled or moved, mostly to bytes that mean something in YAML.
   static std::string mutated(std::string text, Rng rng) {
-    constexpr std::string_view kTelling = "[]{}:,-?&*!|>'\"%@`#\n\t 0a\\~<=\r\xC3\x80";
-    const auto times = 1 + rng.below(4);
-    for (std::uint64_t k = 0; k < times && !text.empty(); ++k) {
-      const auto at = static_cast<std::size_t>(rng.below(text.size()));
-      switch (rng.below(5)) {
-        case 0:
-          text[at] = static_cast<char>(rng.below(256));
-          break;
-        case 1:
-          text.erase(at, 1 + static_cast<std::size_t>(rng.below(8)));
-          break;
-        case 2:
-          text.insert(at, text.substr(static_cast<std::size_t>(rng.below(text.size())),
-                                      1 + static_cast<std::size_t>(rng.below(40))));
-          break;
-        default:
-          text[at] = kTelling[static_cast<std::size_t>(rng.below(kTelling.size()))];
-          break;
-      }
-    }
-    return text;
+    return test::mutated(std::move(text), rng, "[]{}:,-?&*!|>'\"%@`#\n\t 0a\\~<=\r\xC3\x80");
   }
 
   ShowFolder folder_;
