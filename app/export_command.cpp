@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/drone_zip.hpp"
 #include "app/export_files.hpp"
+#include "app/import/drone_zip.hpp"
 #include "app/output_place.hpp"
 #include "app/plan_step.hpp"
 #include "config/output_file.hpp"

@@ -17,14 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A field of CSV after RFC 4180: in quotes where it must be.
-std::string field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 Json cells_of(const Grid& grid, const std::vector<CellIndex>& cells) {
   Json out = Json::array();
   for (const CellIndex index : cells) {
@@ -90,6 +82,14 @@ Json section_of(const Plan& plan, const Show& show, const PlanSection& section) 
 
 }  // namespace
 
+std::string csv_field(std::string_view text) {
+  const bool edges = !text.empty() && (text.front() == '#' || text.front() == ' ' || text.back() == ' ');
+  if (!edges && text.find_first_of(",\"\r\n\t") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 MarkLooks::MarkLooks(const Plan& plan) : plan_(plan), arrivals_(static_cast<std::size_t>(plan.stage.grid.size())) {
   for (const auto& track : plan.tracks) {
     for (std::size_t k = 1; k < track.size(); ++k) {
@@ -128,7 +128,7 @@ std::string marks_csv(const Plan& plan, const Show& show) {
   std::unordered_map<Duration::rep, std::string> instants;  // "count,time_s", looked up only
   std::string out = "performer,count,time_s,col,row,x_m,y_m,look,section\n";
   for (std::size_t p = 0; p < plan.tracks.size(); ++p) {
-    const std::string name = field(plan.performers[p]);
+    const std::string name = csv_field(plan.performers[p]);
     const auto& track = plan.tracks[p];
     for (std::size_t k = 0; k < track.size(); ++k) {
       std::string& instant = instants[track[k].time.time_since_epoch().count()];
@@ -137,7 +137,7 @@ std::string marks_csv(const Plan& plan, const Show& show) {
       }
       out.append(name).append(1, ',').append(instant).append(1, ',').append(places[track[k].cell.at()]).append(1, ',');
       out += looks.of(p, k);
-      out.append(1, ',').append(field(plan.sections[section_at(plan, track[k].time)].name)).append(1, '\n');
+      out.append(1, ',').append(csv_field(plan.sections[section_at(plan, track[k].time)].name)).append(1, '\n');
     }
   }
   return out;
@@ -146,13 +146,13 @@ std::string marks_csv(const Plan& plan, const Show& show) {
 std::string formations_csv(const Plan& plan) {
   std::string out = "formation,count,time_s,frame,performer,col,row,key\n";
   for (const Formation& formation : plan.formations) {
-    const std::string start = field(formation.id) + "," + exact(tidy_count(formation.count)) + "," +
+    const std::string start = csv_field(formation.id) + "," + exact(tidy_count(formation.count)) + "," +
                               exact_seconds(formation.time) + "," +
                               (formation.frame ? std::to_string(*formation.frame) : "") + ",";
     for (std::size_t p = 0; p < formation.cells.size(); ++p) {
       const Cell cell = plan.stage.grid.cell(formation.cells[p]);
-      out += start + field(plan.performers[p]) + "," + std::to_string(cell.column) + "," + std::to_string(cell.row) +
-             (formation.key ? ",1\n" : ",0\n");
+      out += start + csv_field(plan.performers[p]) + "," + std::to_string(cell.column) + "," +
+             std::to_string(cell.row) + (formation.key ? ",1\n" : ",0\n");
     }
   }
   return out;

@@ -30,6 +30,9 @@ class MarkLooks {
   std::vector<std::vector<Instant>> arrivals_;  ///< at each cell, ascending
 };
 
+/// A field of CSV after RFC 4180: in quotes where it must be, and where it would read as a comment or lose blanks.
+[[nodiscard]] std::string csv_field(std::string_view text);
+
 /// `performer,count,time_s,col,row,x_m,y_m,look,section`, a row for each mark, by performer in the show's order, then
 /// time. `look`: see MarkLooks.
 [[nodiscard]] std::string marks_csv(const Plan& plan, const Show& show);

@@ -16,6 +16,7 @@
 #include "app/diff_command.hpp"
 #include "app/dryrun_command.hpp"
 #include "app/export_command.hpp"
+#include "app/import_command.hpp"
 #include "app/measure_command.hpp"
 #include "app/new_command.hpp"
 #include "app/plan_command.hpp"
@@ -32,10 +33,10 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,     add_check_command,  add_plan_command,   add_measure_command,
-    add_why_command,     add_export_command, add_sheets_command, add_preview_command,
-    add_report_command,  add_diff_command,   add_dryrun_command, add_dark_command,
-    add_devices_command, add_sim_command,    add_run_command,    add_bundle_command,
+    add_new_command,    add_check_command,  add_plan_command,    add_measure_command, add_why_command,
+    add_export_command, add_sheets_command, add_preview_command, add_report_command,  add_diff_command,
+    add_dryrun_command, add_dark_command,   add_devices_command, add_sim_command,     add_run_command,
+    add_bundle_command, add_import_command,
 };
 
 constexpr const char* kFooter =

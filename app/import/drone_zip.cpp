@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/drone_zip.hpp"
+#include "app/import/drone_zip.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -10,10 +10,12 @@
 #include <zip.h>
 
 #include "app/export_files.hpp"
+#include "app/import/imported.hpp"
 #include "app/numbers.hpp"
 #include "app/output_place.hpp"
 #include "config/csv.hpp"
 #include "config/nearest.hpp"
+#include "config/zip_file.hpp"
 
 namespace footlight::app {
 namespace {
@@ -54,7 +56,7 @@ std::optional<Number> number_in(const config::CsvTable& table, const config::Csv
 void read_row(const config::CsvTable& table, const std::vector<config::CsvField>& row, DroneTrack& track,
               Diagnostics& diagnostics) {
   constexpr double kFar_m = 1e6;
-  const auto field = [&](const char* name) -> const config::CsvField& { return row[*table.column(name)]; };
+  const auto field = [&](std::string_view name) -> const config::CsvField& { return row[*table.column(name)]; };
   const auto ms = number_in<std::int64_t>(table, field("Time_msec"), 0, 1'000'000'000, diagnostics);
   const auto x = number_in<double>(table, field("x_m"), -kFar_m, kFar_m, diagnostics);
   const auto y = number_in<double>(table, field("y_m"), -kFar_m, kFar_m, diagnostics);
@@ -70,6 +72,7 @@ void read_row(const config::CsvTable& table, const std::vector<config::CsvField>
   }
   const auto byte = [](int value) { return static_cast<std::uint8_t>(value); };
   track.points.push_back({*ms, {*x, *y}, *z, {byte(*red), byte(*green), byte(*blue)}});
+  track.lines.push_back(row.front().line);
 }
 
 std::optional<DroneTrack> track_in(std::string_view text, const std::string& name, const std::string& file,
@@ -82,17 +85,16 @@ std::optional<DroneTrack> track_in(std::string_view text, const std::string& nam
                       "Time_msec,x_m,y_m,z_m,R,G,B");
     return std::nullopt;
   }
-  DroneTrack out{name, {}};
+  DroneTrack out{name, {}, file, {}};
   for (const auto& row : table->rows) read_row(*table, row, out, diagnostics);
   return out;
 }
 
-/// The bytes of one file in a zip; nothing when it cannot be unpacked.
-std::optional<std::string> unpacked(zip_t* zip, zip_uint64_t index, zip_uint64_t size) {
-  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(zip, index, 0), zip_fclose);
-  if (!file) return std::nullopt;
-  std::string out(size, '\0');
-  if (zip_fread(file.get(), out.data(), size) != static_cast<zip_int64_t>(size)) return std::nullopt;
+/// "show/D7.csv" is D7's.
+std::string performer_of(std::string_view file) {
+  const std::size_t slash = file.find_last_of("/\\") + 1;
+  std::string out(file.substr(slash));
+  if (out.ends_with(".csv") || out.ends_with(".CSV")) out.resize(out.size() - 4);
   return out;
 }
 
@@ -158,48 +160,58 @@ Result<std::string> drone_zip(const std::vector<DroneTrack>& tracks) {
   return out;
 }
 
-Result<std::vector<DroneTrack>> read_drone_zip(std::string_view bytes, const std::string& zip_name) {
-  zip_error_t error;
-  zip_error_init(&error);
-  zip_source_t* whole = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
-  const Zip zip(whole == nullptr ? nullptr : zip_open_from_source(whole, ZIP_RDONLY, &error));
-  if (!zip) {
-    if (whole != nullptr) zip_source_free(whole);
-    return input_error(fmt::format("'{}' is no zip that can be read: {}", zip_name, zip_error_strerror(&error)));
-  }
-  std::vector<DroneTrack> out;
+Result<DroneTrack> read_drone_csv(std::string_view text, const std::string& file) {
   Diagnostics diagnostics;
-  std::uint64_t left = kMostDroneBytes;
-  for (zip_int64_t i = 0; i < zip_get_num_entries(zip.get(), 0); ++i) {
-    zip_stat_t about;
-    zip_stat_init(&about);
-    if (zip_stat_index(zip.get(), static_cast<zip_uint64_t>(i), 0, &about) != 0) continue;
-    const std::string inside = about.name;
-    if (inside.ends_with('/')) continue;
-    const std::string file = zip_name + "/" + inside;
-    if (!inside.ends_with(".csv")) {
+  if (text.size() > kMostDroneFileBytes) {
+    return input_error(fmt::format("{}: error: is more than {} bytes", file, kMostDroneFileBytes));
+  }
+  auto track = track_in(text, performer_of(file), file, diagnostics);
+  if (diagnostics.has_errors()) return first_errors(diagnostics);
+  if (!track || track->points.empty()) return input_error(file + ": error: no line says where anybody is");
+  return *std::move(track);
+}
+
+bool is_drone_csv(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  Diagnostics ignored;
+  const std::size_t end = text.find('\n');
+  const auto table = config::parse_csv(text.substr(0, end), "", {}, ignored);
+  return table && table->column("Time_msec").has_value();
+}
+
+Result<std::vector<DroneTrack>> read_drone_zip(std::string_view bytes, const std::string& zip_name) {
+  const auto zip = config::ZipFile::open(bytes, zip_name);
+  if (!zip) return zip.error();
+  std::vector<DroneTrack> out;
+  std::set<std::string> names;
+  Diagnostics diagnostics;
+  std::uint64_t lines = 0;
+  for (const config::ZipFile::Entry& entry : zip->entries()) {
+    const std::string file = zip_name + "/" + entry.name;
+    if (!entry.name.ends_with(".csv") && !entry.name.ends_with(".CSV")) {
       diagnostics.error({file, 0, 0}, "", "is no CSV file", "a zip of NAME.csv, one for each performer");
       continue;
     }
-    if (about.size > left) {
-      return input_error(fmt::format("'{}' holds more than {} bytes", zip_name, kMostDroneBytes));
+    const auto text = zip->read(entry, kMostDroneFileBytes);
+    if (!text) return text.error();
+    auto track = track_in(*text, performer_of(entry.name), file, diagnostics);
+    if (!track) continue;
+    if (track->points.empty() && !diagnostics.has_errors()) {
+      diagnostics.error({file, 0, 0}, "", "no line says where anybody is", "Time_msec,x_m,y_m,z_m,R,G,B");
     }
-    left -= about.size;
-    const auto text = unpacked(zip.get(), static_cast<zip_uint64_t>(i), about.size);
-    if (!text) {
-      diagnostics.error({file, 0, 0}, "", "cannot be unpacked", "a zip that is whole");
-      continue;
+    if (!names.insert(track->name).second) {
+      diagnostics.error({file, 0, 0}, "", "a second file of performer " + config::in_quotes(track->name),
+                        "one file for each performer");
     }
-    const std::size_t slash = inside.rfind('/') + 1;
-    if (auto track = track_in(*text, inside.substr(slash, inside.size() - slash - 4), file, diagnostics)) {
-      out.push_back(*std::move(track));
+    lines += track->points.size();
+    if (lines > kMostDroneLines) {
+      return input_error(fmt::format("'{}' has more than {} lines", zip_name, kMostDroneLines));
     }
+    out.push_back(*std::move(track));
   }
-  if (diagnostics.has_errors()) {
-    std::string text = diagnostics.to_text();
-    text.pop_back();
-    return input_error(text);
-  }
+  if (diagnostics.has_errors()) return first_errors(diagnostics);
+  if (out.empty())
+    return input_error(fmt::format("'{}' is empty (a zip of NAME.csv, one for each performer)", zip_name));
   return out;
 }
 
