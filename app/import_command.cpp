@@ -157,7 +157,8 @@ class Import {
 
   std::optional<Error> take_lists(GridChoice choice) {
     const std::map<std::string, double> units{{"m", 1}, {"steps", kDrillStep}, {"yd", 0.9144}, {"ft", 0.3048}};
-    auto imported = read_coordinate_lists(out_.sources.lists, {{options_.hashes, options_.depth}, units.at(options_.unit)});
+    auto imported =
+        read_coordinate_lists(out_.sources.lists, {{options_.hashes, options_.depth}, units.at(options_.unit)});
     if (!imported) return imported.error();
     out_.imported = *std::move(imported);
     std::vector<ImportedPlace> places;
@@ -187,7 +188,8 @@ class Import {
     if (auto done = folder->fill(show_files(out_.made->show, remarks)); !done) return done.error();
     auto loaded = config::load_show(folder->path() / "show.yaml");
     if (!loaded) {
-      return input_error("what was understood is no show that Footlight takes:\n" + first_errors(loaded.error()).message);
+      return input_error("what was understood is no show that Footlight takes:\n" +
+                         first_errors(loaded.error()).message);
     }
     if (!out_.sources.tracks.empty() && !options_.no_plan) {
       if (auto error = compare(loaded->show)) return error;
@@ -257,7 +259,8 @@ class Import {
     out["duration_s"] = to_seconds(tempo_.at(1 + out_.score->counts));
     Json changes = Json::array();
     for (const TempoChange& change : tempo_.changes()) {
-      changes.push_back({{"count", change.count}, {"time_s", to_seconds(tempo_.at(change.count))}, {"tempo", change.bpm}});
+      changes.push_back(
+          {{"count", change.count}, {"time_s", to_seconds(tempo_.at(change.count))}, {"tempo", change.bpm}});
     }
     out["changes"] = std::move(changes);
     Json marks = Json::array();
@@ -269,7 +272,9 @@ class Import {
   }
 
   [[nodiscard]] Json json() const {
-    Json out{{"kind", is_music_alone() ? "music" : out_.sources.lists.empty() ? "tracks" : "coordinates"},
+    Json out{{"kind", is_music_alone()             ? "music"
+                      : out_.sources.lists.empty() ? "tracks"
+                                                   : "coordinates"},
              {"files", options_.files},
              {"music", music_json()}};
     if (out_.made) {
@@ -320,12 +325,13 @@ class Import {
 
   [[nodiscard]] std::string people_text() const {
     const Grid& grid = out_.made->show.stage.grid;
-    std::string out = fmt::format("{} people, {} formations to count {:g}; {} x {} cells of {:g} m\n",
-                                  out_.imported.people.size(), out_.imported.formations.size(), last_count(),
-                                  grid.columns(), grid.rows(), grid.pitch_m());
+    std::string out =
+        fmt::format("{} people, {} formations to count {:g}; {} x {} cells of {:g} m\n", out_.imported.people.size(),
+                    out_.imported.formations.size(), last_count(), grid.columns(), grid.rows(), grid.pitch_m());
     const Point& shift = out_.grid.shift;
     const auto more = [](double by_m, const char* there, const char* back) {
-      return fmt::format("everything lies {:g} m farther {} than in the file\n", std::abs(by_m), by_m > 0 ? there : back);
+      return fmt::format("everything lies {:g} m farther {} than in the file\n", std::abs(by_m),
+                         by_m > 0 ? there : back);
     };
     if (shift.x != 0) out += more(shift.x, "stage left", "stage right");
     if (shift.y != 0) out += more(shift.y, "upstage", "downstage");

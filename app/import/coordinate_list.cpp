@@ -31,19 +31,45 @@ struct KnownColumn {
   double unit_m = 0;  ///< of x and y; 0: as chosen
 };
 constexpr std::array<KnownColumn, 39> kColumns{{
-    {"performer", Column::who},   {"name", Column::who},           {"label", Column::who},
-    {"id", Column::who},          {"marcher", Column::who},        {"drillnumber", Column::who},
-    {"symbol", Column::symbol},   {"set", Column::set},            {"page", Column::set},
-    {"counts", Column::counts},   {"count", Column::count},        {"side", Column::side},
-    {"sidetoside", Column::side}, {"side1side2", Column::side},    {"leftright", Column::side},
-    {"lefttoright", Column::side}, {"lateral", Column::side},      {"frontback", Column::depth},
-    {"fronttoback", Column::depth}, {"homevisitor", Column::depth}, {"x", Column::x},
-    {"y", Column::y},             {"xm", Column::x, 1},            {"ym", Column::y, 1},
-    {"xsteps", Column::x, kStep_m}, {"ysteps", Column::y, kStep_m}, {"xyd", Column::x, 0.9144},
-    {"yyd", Column::y, 0.9144},   {"xft", Column::x, 0.3048},      {"yft", Column::y, 0.3048},
-    {"measure", Column::none},    {"measures", Column::none},      {"zm", Column::none},
-    {"z", Column::none},          {"r", Column::none},             {"g", Column::none},
-    {"b", Column::none},          {"notes", Column::none},         {"section", Column::none},
+    {"performer", Column::who},
+    {"name", Column::who},
+    {"label", Column::who},
+    {"id", Column::who},
+    {"marcher", Column::who},
+    {"drillnumber", Column::who},
+    {"symbol", Column::symbol},
+    {"set", Column::set},
+    {"page", Column::set},
+    {"counts", Column::counts},
+    {"count", Column::count},
+    {"side", Column::side},
+    {"sidetoside", Column::side},
+    {"side1side2", Column::side},
+    {"leftright", Column::side},
+    {"lefttoright", Column::side},
+    {"lateral", Column::side},
+    {"frontback", Column::depth},
+    {"fronttoback", Column::depth},
+    {"homevisitor", Column::depth},
+    {"x", Column::x},
+    {"y", Column::y},
+    {"xm", Column::x, 1},
+    {"ym", Column::y, 1},
+    {"xsteps", Column::x, kStep_m},
+    {"ysteps", Column::y, kStep_m},
+    {"xyd", Column::x, 0.9144},
+    {"yyd", Column::y, 0.9144},
+    {"xft", Column::x, 0.3048},
+    {"yft", Column::y, 0.3048},
+    {"measure", Column::none},
+    {"measures", Column::none},
+    {"zm", Column::none},
+    {"z", Column::none},
+    {"r", Column::none},
+    {"g", Column::none},
+    {"b", Column::none},
+    {"notes", Column::none},
+    {"section", Column::none},
 }};
 
 std::string plain_name(std::string_view header) {
@@ -76,7 +102,8 @@ class ListReader {
 
   Result<Imported> finish() {
     if (!diagnostics_.has_errors() && rows_.empty()) {
-      diagnostics_.error({out_.files.front(), 0, 0}, "", "no row says where anybody is", "one row for each person and set");
+      diagnostics_.error({out_.files.front(), 0, 0}, "", "no row says where anybody is",
+                         "one row for each person and set");
     }
     if (rows_.size() > kMostPeople) {
       diagnostics_.error({out_.files.front(), 0, 0}, "", fmt::format("{} performers", rows_.size()), "at most 100000");
@@ -84,11 +111,11 @@ class ListReader {
     if (!diagnostics_.has_errors()) make_formations();
     if (diagnostics_.has_errors()) return first_errors(diagnostics_);
     if (hash_assumed_) {
-      out_.ignored.push_back(fmt::format(
-          "hash lines without their kind: taken as {} (--hash)",
-          choice_.field.hashes == HashLines::college ? "college" : "high-school"));
+      out_.ignored.push_back(fmt::format("hash lines without their kind: taken as {} (--hash)",
+                                         choice_.field.hashes == HashLines::college ? "college" : "high-school"));
     }
-    for (const std::string& column : ignored_columns_) out_.ignored.push_back("the column " + config::in_quotes(column));
+    for (const std::string& column : ignored_columns_)
+      out_.ignored.push_back("the column " + config::in_quotes(column));
     return std::move(out_);
   }
 
@@ -232,7 +259,8 @@ class ListReader {
       out_.formations.push_back(std::move(formation));
     }
     if (!is_absolute_ && first.front().count > 0) {
-      out_.ignored.push_back(fmt::format("the {:g} counts of the first set: nobody walks into it", first.front().count));
+      out_.ignored.push_back(
+          fmt::format("the {:g} counts of the first set: nobody walks into it", first.front().count));
     }
     check_sets();
     if (diagnostics_.has_errors()) return;
@@ -247,9 +275,10 @@ class ListReader {
     std::set<std::string> names;
     for (const Row& row : first) {
       if (!names.insert(row.set).second) {
-        diagnostics_.error(position(row), "",
-                           fmt::format("performer {} is in set {} for the second time", first_name, config::in_quotes(row.set)),
-                           "one row for each person and set");
+        diagnostics_.error(
+            position(row), "",
+            fmt::format("performer {} is in set {} for the second time", first_name, config::in_quotes(row.set)),
+            "one row for each person and set");
       }
     }
     for (const auto& [name, rows] : rows_) {
@@ -262,17 +291,18 @@ class ListReader {
           break;
         }
         if (rows[s].count != first[s].count) {
-          diagnostics_.error({out_.files[static_cast<std::size_t>(rows[s].place.file)], rows[s].when.line, rows[s].when.column},
-                             "",
-                             fmt::format("{:g} counts for performer {}, {:g} for {} (line {})", rows[s].count, name,
-                                         first[s].count, first_name, first[s].place.line),
-                             "a set has the same counts for everybody");
+          diagnostics_.error(
+              {out_.files[static_cast<std::size_t>(rows[s].place.file)], rows[s].when.line, rows[s].when.column}, "",
+              fmt::format("{:g} counts for performer {}, {:g} for {} (line {})", rows[s].count, name, first[s].count,
+                          first_name, first[s].place.line),
+              "a set has the same counts for everybody");
         }
       }
       if (rows.size() == first.size()) continue;
-      diagnostics_.error(position(rows.back()), "",
-                         fmt::format("performer {} has {} sets, {} has {}", name, rows.size(), first_name, first.size()),
-                         "everybody has the same sets in the same order");
+      diagnostics_.error(
+          position(rows.back()), "",
+          fmt::format("performer {} has {} sets, {} has {}", name, rows.size(), first_name, first.size()),
+          "everybody has the same sets in the same order");
     }
   }
 

@@ -33,8 +33,8 @@ struct DrillSteps {
 };
 
 /// "Side 1: 2.5 steps outside 40 yd ln", "2 outside Side 2 35", "On 50 yd ln": steps from the 50 yard line, side 2 (the
-/// audience's right, stage left) positive. Side 1 is also Left, A or S1. Yard lines are 0, 5 .. 50; outside is away from
-/// the 50.
+/// audience's right, stage left) positive. Side 1 is also Left, A or S1. Yard lines are 0, 5 .. 50; outside is away
+/// from the 50.
 [[nodiscard]] DrillSteps side_to_side(std::string_view words);
 
 /// "8.0 steps behind Front Hash (HS)", "4 in front of Back side line", "On Front sideline": steps from the front side

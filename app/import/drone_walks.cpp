@@ -109,13 +109,12 @@ double count_of(const TempoMap& tempo, std::int64_t time_ms) {
 
 /// Instants that may be formations, ascending, and whether somebody turns there.
 std::map<std::int64_t, bool> candidates(const std::vector<DroneTrack>& tracks,
-                                        const std::vector<std::vector<std::size_t>>& turns, bool snapping) {
+                                        const std::vector<std::vector<std::size_t>>& turns, bool turns_alone) {
   std::map<std::int64_t, bool> out;
   for (std::size_t p = 0; p < tracks.size(); ++p) {
     for (const std::size_t i : turns[p]) out[tracks[p].points[i].time_ms] = true;
   }
-  // Where people are moved, samples on the way would be moved, too: only turns count.
-  if (snapping) return out;
+  if (turns_alone) return out;
   std::vector<std::int64_t> common;
   for (const DronePoint& point : tracks.front().points) common.push_back(point.time_ms);
   for (const DroneTrack& track : tracks) {
@@ -188,7 +187,7 @@ class Walks {
     for (const DroneTrack& track : tracks_) followers.emplace_back(track);
     std::vector<CellIndex> before;
     bool passed_a_turn = false;
-    for (const auto& [time_ms, turn] : candidates(tracks_, turns_, choice_.grid.snap_m > 0)) {
+    for (const auto& [time_ms, turn] : candidates(tracks_, turns_, is_sampled())) {
       ImportedFormation now;
       std::vector<CellIndex> cells;
       bool all_on = true;
@@ -219,6 +218,16 @@ class Walks {
     }
     if (out_.imported.formations.empty()) return input_error("at no instant is everybody on a cell");
     return std::nullopt;
+  }
+
+  /// Whether lines are samples of walks, and no marks: then a line on a cell may be an accident, and only turns count;
+  /// as where people are moved, since samples on the way would be moved, too.
+  [[nodiscard]] bool is_sampled() const {
+    if (choice_.grid.snap_m > 0) return true;
+    return std::any_of(tracks_.begin(), tracks_.end(), [&](const DroneTrack& track) {
+      return std::any_of(track.points.begin(), track.points.end(),
+                         [&](const DronePoint& point) { return out_.grid.off_m(point.at) > out_.grid.tolerance_m; });
+    });
   }
 
   void dark(std::vector<Follower>& followers, const ImportedFormation& formation) {

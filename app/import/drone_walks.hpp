@@ -24,11 +24,11 @@ struct DroneWalks {
   FittingGrid grid;
 };
 
-/// The instants at which everybody is on a cell and somebody starts, stops, turns or everybody has a line: formations.
-/// Lines on a straight way of constant speed between two of them, as programs write that sample, add nothing.
-/// Where somebody turns while others walk there is no formation; the planner finds such ways anew.
-/// Errors: tracks of unequal length, a turn on no cell, two people on one cell, formations between whole counts unless
-/// `between_counts`. O(all lines + instants x people)
+/// The instants at which everybody is on a cell and somebody starts, stops or turns, or everybody has a line:
+/// formations. Lines on a straight way of constant speed between two of them, as programs write that sample, add
+/// nothing: where any line is on no cell, only starts, stops and turns count. Where somebody turns while others walk
+/// there is no formation; the planner finds such ways anew. Errors: tracks of unequal length, a turn on no cell, two
+/// people on one cell, formations between whole counts unless `between_counts`. O(all lines + instants x people)
 [[nodiscard]] Result<DroneWalks> drone_walks(const std::vector<DroneTrack>& tracks, const WalkChoice& choice);
 
 /// Largest distance of anybody's way in the plan from the tracks, and whose. @param order tracks in the plan's order

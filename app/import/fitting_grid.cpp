@@ -193,7 +193,7 @@ Result<OnCells> cells_of(const Imported& imported, const FittingGrid& grid) {
       const double off_m = grid.off_m(place.at);
       if (off_m > grid.tolerance_m) return no_cell(imported, grid, place);
       if (off_m > kRounding_m) ++out.moved;
-      if (off_m > out.largest_move_m) {
+      if (off_m > std::max(kExact_m, out.largest_move_m)) {
         out.largest_move_m = off_m;
         out.farthest_formation = f;
         out.farthest_person = p;

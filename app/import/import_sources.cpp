@@ -20,7 +20,8 @@ std::optional<Error> take_score(const std::string& bytes, const std::string& fil
     return input_error(fmt::format("'{}' and '{}' are both music (a show has one)", out.score_file, file));
   }
   if (bytes.size() > config::kMostScoreBytes) {
-    return input_error(fmt::format("'{}' has {} bytes (music at most {})", file, bytes.size(), config::kMostScoreBytes));
+    return input_error(
+        fmt::format("'{}' has {} bytes (music at most {})", file, bytes.size(), config::kMostScoreBytes));
   }
   auto score = config::read_score(bytes, file);
   if (!score) return score.error();

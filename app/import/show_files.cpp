@@ -132,10 +132,12 @@ std::string music_yaml(const TempoMap& tempo, const std::vector<config::Score::R
       changes[tempo.meters()[i].count] += fmt::format(", meter: {}/4", tempo.meters()[i].beats);
     }
     out += "  changes:\n";
-    for (const auto& [count, change] : changes) out += fmt::format("    - {{at: count {}{}}}\n", decimal(count), change);
+    for (const auto& [count, change] : changes)
+      out += fmt::format("    - {{at: count {}{}}}\n", decimal(count), change);
   }
   for (const auto& mark : rehearsals) {
-    out += fmt::format("  # count {} (measure {}): {}\n", decimal(mark.count), tempo.measure_beat(mark.count), one_line(mark.text));
+    out += fmt::format("  # count {} (measure {}): {}\n", decimal(mark.count), tempo.measure_beat(mark.count),
+                       one_line(mark.text));
   }
   return out;
 }

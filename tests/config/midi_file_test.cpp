@@ -29,7 +29,9 @@ std::string variable(std::uint32_t value) {
 std::string meta(std::uint32_t delta, int type, const std::string& data) {
   return variable(delta) + '\xFF' + static_cast<char>(type) + variable(static_cast<std::uint32_t>(data.size())) + data;
 }
-std::string tempo(std::uint32_t delta, std::uint32_t quarter_us) { return meta(delta, 0x51, big_endian(quarter_us, 3)); }
+std::string tempo(std::uint32_t delta, std::uint32_t quarter_us) {
+  return meta(delta, 0x51, big_endian(quarter_us, 3));
+}
 std::string meter(std::uint32_t delta, int beats, int power) {
   return meta(delta, 0x58, std::string{static_cast<char>(beats), static_cast<char>(power), 24, 8});
 }
@@ -38,8 +40,9 @@ std::string chunk(const std::string& name, const std::string& content) {
 }
 std::string end(std::uint32_t delta) { return meta(delta, 0x2F, ""); }
 std::string midi(int format, std::uint32_t division, const std::vector<std::string>& tracks) {
-  std::string out = chunk("MThd", big_endian(static_cast<std::uint32_t>(format), 2) +
-                                      big_endian(static_cast<std::uint32_t>(tracks.size()), 2) + big_endian(division, 2));
+  std::string out =
+      chunk("MThd", big_endian(static_cast<std::uint32_t>(format), 2) +
+                        big_endian(static_cast<std::uint32_t>(tracks.size()), 2) + big_endian(division, 2));
   for (const std::string& track : tracks) out += chunk("MTrk", track);
   return out;
 }
@@ -52,9 +55,10 @@ Score score(const std::string& bytes, CountUnit unit = CountUnit::beat) {
 }
 
 TEST(Midi, TempoAndMeterOfASongOfOneTrack) {
-  const Score read = score(midi(0, 480, {tempo(0, 500'000) + meter(0, 3, 2) + std::string("\0\x90\x40\x40", 4) +
-                                             variable(480) + "\x40" + std::string(1, '\0') + tempo(960, 1'000'000) +
-                                             meta(0, 0x06, "B") + end(1440)}));
+  const Score read =
+      score(midi(0, 480,
+                 {tempo(0, 500'000) + meter(0, 3, 2) + std::string("\0\x90\x40\x40", 4) + variable(480) + "\x40" +
+                  std::string(1, '\0') + tempo(960, 1'000'000) + meta(0, 0x06, "B") + end(1440)}));
   EXPECT_EQ(read.tempo, *TempoMap::from({{1, 120}, {4, 60}}, 3));
   EXPECT_EQ(read.counts, 6);
   ASSERT_EQ(read.rehearsals.size(), 1U);
@@ -108,8 +112,8 @@ TEST(Midi, WhatIsNotKeptIsTold) {
                               "no tempo stands at the beginning: 120 quarter notes a minute are taken",
                               "the meter 3/4 at count 3: no measure begins here; the next one does at count 5"}));
   const Score seven = score(midi(0, 480, {tempo(0, 500'000) + meter(0, 7, 3) + end(0)}), CountUnit::quarter);
-  EXPECT_EQ(seven.ignored, (std::vector<std::string>{
-                               "the meter 7/8 has no whole number of counts: measures of 4 counts are taken"}));
+  EXPECT_EQ(seven.ignored,
+            (std::vector<std::string>{"the meter 7/8 has no whole number of counts: measures of 4 counts are taken"}));
 }
 
 TEST(Midi, WrongFilesAreRefusedWithTheirPlace) {
@@ -127,8 +131,10 @@ TEST(Midi, WrongFilesAreRefusedWithTheirPlace) {
   EXPECT_EQ(error_of(midi(0, 480, {variable(0) + "\x90\x40"})),
             "song.mid: error: byte 22: the track ends in the middle of this event");
   const std::string whole = midi(1, 480, {tempo(0, 500'000) + end(0), end(0)});
-  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 12)), "song.mid: error: byte 33: the file ends after 1 of 2 tracks");
-  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 1)), "song.mid: error: byte 33: the file ends in the middle of this chunk");
+  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 12)),
+            "song.mid: error: byte 33: the file ends after 1 of 2 tracks");
+  EXPECT_EQ(error_of(whole.substr(0, whole.size() - 1)),
+            "song.mid: error: byte 33: the file ends in the middle of this chunk");
 }
 
 TEST(Midi, TemposThatNoShowCanHaveAreRefused) {
@@ -202,9 +208,10 @@ for mark in marks: print(mark[0], repr(mark[1]))
 }
 
 TEST(Midi, MutationsAreSurvived) {
-  const std::string whole =
-      midi(1, 480, {tempo(0, 500'000) + meter(0, 6, 3) + meta(480, 0x06, "\xE9t\xE9") + meta(0, 0x54, "\x60\1\2\3\4") + end(960),
-                    std::string("\0\x90\x40\x40\x10\x40\0\0\xC0\1\0\xF0\3\1\2\xF7", 16) + tempo(96, 600'000) + end(10)});
+  const std::string whole = midi(
+      1, 480,
+      {tempo(0, 500'000) + meter(0, 6, 3) + meta(480, 0x06, "\xE9t\xE9") + meta(0, 0x54, "\x60\1\2\3\4") + end(960),
+       std::string("\0\x90\x40\x40\x10\x40\0\0\xC0\1\0\xF0\3\1\2\xF7", 16) + tempo(96, 600'000) + end(10)});
   ASSERT_TRUE(read_midi(whole, "song.mid"));
   const std::uint64_t seeds = test::tries<std::uint64_t>(3'000, 300'000);
   std::size_t read_whole = 0;

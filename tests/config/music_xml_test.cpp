@@ -30,7 +30,8 @@ std::string measure(const std::string& content, const std::string& more = "") {
   return "<measure number=\"1\"" + more + ">" + content + "</measure>\n";
 }
 std::string sound(const std::string& tempo) {
-  return "<direction><direction-type><words>Allegro</words></direction-type><sound tempo=\"" + tempo + "\"/></direction>";
+  return "<direction><direction-type><words>Allegro</words></direction-type><sound tempo=\"" + tempo +
+         "\"/></direction>";
 }
 std::string rehearsal(const std::string& text) {
   return "<direction><direction-type><rehearsal>" + text + "</rehearsal></direction-type></direction>";
@@ -99,11 +100,12 @@ TEST(MusicXml, OtherPartsAddTheirMarksAndLengths) {
 }
 
 TEST(MusicXml, WhatIsNotKeptIsTold) {
-  const Score read = score(score_with(measure(
-      attributes(1, 4, 4) + sound("100") + "<direction><direction-type><words>molto rit.</words></direction-type></direction>" +
-      "<note><rest/><duration>4</duration><notations><fermata/></notations></note>")));
-  EXPECT_THAT(read.ignored, ElementsAre("\"molto rit.\": words do not change the tempo, marks do",
-                                        "fermatas: nobody waits on them"));
+  const Score read =
+      score(score_with(measure(attributes(1, 4, 4) + sound("100") +
+                               "<direction><direction-type><words>molto rit.</words></direction-type></direction>" +
+                               "<note><rest/><duration>4</duration><notations><fermata/></notations></note>")));
+  EXPECT_THAT(read.ignored,
+              ElementsAre("\"molto rit.\": words do not change the tempo, marks do", "fermatas: nobody waits on them"));
 }
 
 TEST(MusicXml, WrongScoresAreRefusedWithTheirPlace) {
@@ -146,15 +148,16 @@ TEST(MusicXml, DeepScoresAreAnswered) {
 TEST(CompressedMusicXml, IsTheScoreThatItsContainerNames) {
   const test::TemporaryFolder folder;
   folder.write("song.xml", score_with(measure(attributes(1, 4, 4) + sound("96") + note(4))));
-  const test::Ran ran = test::run_program(
-      {"python3", "-c",
-       "import sys, zipfile\n"
-       "z = zipfile.ZipFile(sys.argv[2], 'w', zipfile.ZIP_DEFLATED)\n"
-       "z.writestr('META-INF/container.xml', '<container><rootfiles><rootfile full-path=\"score/a.xml\"/></rootfiles></container>')\n"
-       "z.write(sys.argv[1], 'score/a.xml')\nz.close()\n"
-       "z = zipfile.ZipFile(sys.argv[3], 'w')\n"
-       "z.writestr('META-INF/container.xml', '<container><rootfiles><rootfile full-path=\"b.xml\"/></rootfiles></container>')\nz.close()\n",
-       folder / "song.xml", folder / "song.mxl", folder / "lost.mxl"});
+  const test::Ran ran = test::run_program({"python3", "-c",
+                                           "import sys, zipfile\n"
+                                           "z = zipfile.ZipFile(sys.argv[2], 'w', zipfile.ZIP_DEFLATED)\n"
+                                           "z.writestr('META-INF/container.xml', '<container><rootfiles><rootfile "
+                                           "full-path=\"score/a.xml\"/></rootfiles></container>')\n"
+                                           "z.write(sys.argv[1], 'score/a.xml')\nz.close()\n"
+                                           "z = zipfile.ZipFile(sys.argv[3], 'w')\n"
+                                           "z.writestr('META-INF/container.xml', '<container><rootfiles><rootfile "
+                                           "full-path=\"b.xml\"/></rootfiles></container>')\nz.close()\n",
+                                           folder / "song.xml", folder / "song.mxl", folder / "lost.mxl"});
   ASSERT_EQ(ran.status, 0) << ran.err;
   ASSERT_TRUE(looks_like_score(folder.read("song.mxl")));
   const auto read = read_score(folder.read("song.mxl"), "song.mxl");
@@ -174,7 +177,8 @@ TEST(CompressedMusicXml, IsTheScoreThatItsContainerNames) {
 TEST(MusicXml, MutationsAreSurvived) {
   const std::string whole = score_with(
       measure(attributes(2, 6, 8) + sound("132") + rehearsal("A") + note(6) +
-              "<barline location=\"left\"><ending number=\"1, 2\" type=\"start\"/><repeat direction=\"forward\"/></barline>") +
+              "<barline location=\"left\"><ending number=\"1, 2\" type=\"start\"/><repeat "
+              "direction=\"forward\"/></barline>") +
       measure(note(3) + "<backup><duration>3</duration></backup>" + note(6) +
               "<barline><ending number=\"1\" type=\"stop\"/><repeat direction=\"backward\" times=\"3\"/></barline>"));
   ASSERT_TRUE(read_music_xml(whole, "song.musicxml"));

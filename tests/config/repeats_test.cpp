@@ -6,7 +6,8 @@
 namespace footlight::config {
 namespace {
 
-/// Measures as "a", with "|:a", "a:|", "a:3|" (three times), "[1a" for an ending and "a]" for its end; "[1,2a" for both.
+/// Measures as "a", with "|:a", "a:|", "a:3|" (three times), "[1a" for an ending and "a]" for its end; "[1,2a" for
+/// both.
 std::string played(const std::vector<std::string>& written) {
   std::vector<MeasureTurn> turns;
   std::string names;

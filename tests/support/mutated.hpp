@@ -11,7 +11,8 @@
 namespace footlight::test {
 
 /// One to four bytes changed, removed, doubled or moved. @param telling bytes that mean something in the format
-inline std::string mutated(std::string bytes, Rng rng, std::string_view telling = std::string_view("\0\x01\x7F\x80\xFF", 5)) {
+inline std::string mutated(std::string bytes, Rng rng,
+                           std::string_view telling = std::string_view("\0\x01\x7F\x80\xFF", 5)) {
   const auto times = 1 + rng.below(4);
   for (std::uint64_t k = 0; k < times && !bytes.empty(); ++k) {
     const auto at = static_cast<std::size_t>(rng.below(bytes.size()));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/paper/stage_words.hpp"
 #include "core/rng.hpp"
 #include "tests/support/full.hpp"
 #include "tests/support/mutated.hpp"
@@ -38,12 +39,15 @@ TEST(SideToSide, InOtherWords) {
 
 TEST(SideToSide, WhatIsAmbiguousOrWrongIsToldWithItsPlace) {
   const std::string hint = " (for example: Side 1: 2.5 steps outside 40 yd ln)";
-  EXPECT_EQ(wrong(side_to_side("2 steps outside 40 yd ln")), "0: no side is told (Side 1 or Side 2, unless on the 50 yard line)");
+  EXPECT_EQ(wrong(side_to_side("2 steps outside 40 yd ln")),
+            "0: no side is told (Side 1 or Side 2, unless on the 50 yard line)");
   EXPECT_EQ(wrong(side_to_side("Side 1: 2 steps outside 42 yd ln")), "24: 42 is no yard line (0, 5, 10 .. 50)");
   EXPECT_EQ(wrong(side_to_side("Side 1: 2 steps inside 50 yd ln")),
             "8: 2 steps inside the 50 are on the other side (tell it from that side: outside the yard line there)");
-  EXPECT_EQ(wrong(side_to_side("Side 1: 2 steps beside 40")), "16: \"beside\" stands where \"inside\" or \"outside\" belongs" + hint);
-  EXPECT_EQ(wrong(side_to_side("Side 3: on 40")), "0: \"side\" stands where a number of steps, or \"on\", belongs" + hint);
+  EXPECT_EQ(wrong(side_to_side("Side 1: 2 steps beside 40")),
+            "16: \"beside\" stands where \"inside\" or \"outside\" belongs" + hint);
+  EXPECT_EQ(wrong(side_to_side("Side 3: on 40")),
+            "0: \"side\" stands where a number of steps, or \"on\", belongs" + hint);
   EXPECT_EQ(wrong(side_to_side("Side 1: on")), "10: the words end where the number of a yard line belongs" + hint);
   EXPECT_EQ(wrong(side_to_side("Side 1: on 40 yd ln and 2")), "20: \"and\" stands where nothing more belongs" + hint);
   EXPECT_EQ(wrong(side_to_side("")), "0: the words end where a number of steps, or \"on\", belongs" + hint);
@@ -82,6 +86,22 @@ TEST(FrontToBack, WhatIsAmbiguousOrWrongIsToldWithItsPlace) {
   EXPECT_EQ(wrong(front_to_back("8 steps behind Front Hash (NFL)", {})),
             "27: \"nfl\" stands where (HS), (CH) or nothing more belongs" + hint);
   EXPECT_EQ(wrong(front_to_back("101 steps behind Front Hash", {})), "0: not 0 to 100 steps" + hint);
+}
+
+/// What the dot sheets say in drill words is understood, to the quarter of a step that they tell.
+TEST(DrillWords, OfTheDotSheetsAreUnderstood) {
+  const Grid grid = *Grid::make(GridKind::square, 200, 100, kDrillStep_m);
+  Rng rng(3);
+  for (int k = 0; k < 2'000; ++k) {
+    const Point at{(160 * rng.uniform() - 80) * kDrillStep_m, (85 * rng.uniform()) * kDrillStep_m};
+    const std::string words = place_in_words({Language::english, PlaceStyle::drill, kDrillStep_m}, grid, at);
+    const std::size_t comma = words.find(", ");
+    const auto x = side_to_side(words.substr(0, comma));
+    const auto y = front_to_back(words.substr(comma + 2), {HashLines::college, FieldDepth::measured});
+    ASSERT_TRUE(x.steps && y.steps) << words << ": " << x.error << y.error;
+    EXPECT_NEAR(*x.steps, at.x / kDrillStep_m, 0.126) << words;
+    EXPECT_NEAR(*y.steps, at.y / kDrillStep_m, 0.126) << words;
+  }
 }
 
 TEST(DrillWords, MutationsAreSurvived) {

@@ -44,7 +44,8 @@ TEST(DroneWalks, HoldsAndWalksBecomeFormations) {
 TEST(DroneWalks, SamplesOfStraightWalksAddNothing) {
   std::vector<DronePoint> a;
   std::vector<DronePoint> b;
-  for (int k = 0; k <= 100; ++k) {  // 25 a second, walks of 2.8 m and back, rounded to millimetres as programs write them
+  for (int k = 0; k <= 100;
+       ++k) {  // 25 a second, walks of 2.8 m and back, rounded to millimetres as programs write them
     const double share = k <= 50 ? k / 50.0 : (100 - k) / 50.0;
     const auto rounded = [](double x) { return std::round(1000 * x) / 1000; };
     a.push_back(at(40 * k, rounded(0.7 + 2.8 * share), 0.7));
@@ -57,9 +58,21 @@ TEST(DroneWalks, SamplesOfStraightWalksAddNothing) {
   EXPECT_NEAR(walks->imported.formations[1].places[0].at.x, 3.5, 1e-9);
 }
 
+TEST(DroneWalks, CellsThatSamplesHappenToLieOnAreNoFormations) {
+  std::vector<DronePoint> a;
+  for (int k = 0; k <= 16; ++k) a.push_back(at(250 * k, 0.5 + (k <= 8 ? k : 16 - k) / 2.0, 0.5));
+  WalkChoice choice = at_120();
+  choice.grid.pitch_m = 1;
+  const auto walks = drone_walks({track("a", a)}, choice);
+  ASSERT_TRUE(walks) << walks.error();
+  ASSERT_EQ(walks->imported.formations.size(), 3U) << "every second sample is on a cell";
+  EXPECT_EQ(walks->imported.formations[1].count, 5);
+}
+
 TEST(DroneWalks, ColoursAndHeightsThatAreNotKeptAreTold) {
-  const auto walks = drone_walks({track("a", {at(0, 0.5, 0.5, {}), {1000, {1.5, 0.5}, 2, {255, 0, 0}}, at(2000, 0.5, 0.5, {0, 0, 255})})},
-                                 at_120());
+  const auto walks = drone_walks(
+      {track("a", {at(0, 0.5, 0.5, {}), {1000, {1.5, 0.5}, 2, {255, 0, 0}}, at(2000, 0.5, 0.5, {0, 0, 255})})},
+      at_120());
   ASSERT_TRUE(walks) << walks.error();
   EXPECT_EQ(walks->imported.people[0].colour, (Colour{255, 0, 0}));
   EXPECT_EQ(walks->imported.dark, (std::vector<Point>{{0.5, 0.5}}));
@@ -69,17 +82,21 @@ TEST(DroneWalks, ColoursAndHeightsThatAreNotKeptAreTold) {
 }
 
 TEST(DroneWalks, WhatIsNoShowIsRefused) {
-  EXPECT_EQ(error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}), track("b", {at(0, 2.5, 0.5), at(1500, 2.5, 1.5)})}),
-            "b.csv:3:1: error: b ends at 1500 ms, and a at 2000 ms (everybody's file covers the same time)");
-  EXPECT_EQ(error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}), track("b", {at(500, 2.5, 0.5), at(2000, 2.5, 1.5)})}),
+  EXPECT_EQ(
+      error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}), track("b", {at(0, 2.5, 0.5), at(1500, 2.5, 1.5)})}),
+      "b.csv:3:1: error: b ends at 1500 ms, and a at 2000 ms (everybody's file covers the same time)");
+  EXPECT_EQ(error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}),
+                      track("b", {at(500, 2.5, 0.5), at(2000, 2.5, 1.5)})}),
             "b.csv:2:1: error: b begins at 500 ms, and a at 0 ms (everybody's file covers the same time)");
-  EXPECT_EQ(error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}), track("b", {at(0, 2.5, 0.5), at(2000, 1.5, 0.5)})}),
-            "b.csv:3:1: error: performers a and b both stand on G1 in formation 2 (count 5) (the first in a.csv:3; one "
-            "person on each cell)");
+  EXPECT_EQ(
+      error_of({track("a", {at(0, 0.5, 0.5), at(2000, 1.5, 0.5)}), track("b", {at(0, 2.5, 0.5), at(2000, 1.5, 0.5)})}),
+      "b.csv:3:1: error: performers a and b both stand on G1 in formation 2 (count 5) (the first in a.csv:3; one "
+      "person on each cell)");
   const std::vector<DroneTrack> between{track("a", {at(0, 0.5, 0.5), at(1300, 1.5, 0.5), at(2000, 0.5, 0.5)})};
-  EXPECT_EQ(error_of(between),
-            "a.csv: error: 1 of 3 formations begin or end on no count; the first is 1300 ms, count 3.6 (give the music's "
-            "--tempo or its file, or keep the times as they are with --between-counts)");
+  EXPECT_EQ(
+      error_of(between),
+      "a.csv: error: 1 of 3 formations begin or end on no count; the first is 1300 ms, count 3.6 (give the music's "
+      "--tempo or its file, or keep the times as they are with --between-counts)");
   EXPECT_EQ(error_of(between, {TempoMap(120), true, {}}), "understood");
   WalkChoice pitch = at_120();
   pitch.grid.pitch_m = 1;

@@ -31,11 +31,12 @@ TEST(FittingGrid, PlacesOfAnotherGridAreCellsAgainWithoutAShift) {
   const bool held = rc::check([](std::uint64_t seed) {
     Rng rng(seed);
     constexpr double kPitches[] = {1, 0.5, 0.8, 2, 0.5715, 0.3};
-    const Grid grid = *Grid::make(GridKind::square, 2 + static_cast<int>(rng.below(40)), 2 + static_cast<int>(rng.below(40)),
-                                  kPitches[rng.below(6)]);
+    const Grid grid = *Grid::make(GridKind::square, 2 + static_cast<int>(rng.below(40)),
+                                  2 + static_cast<int>(rng.below(40)), kPitches[rng.below(6)]);
     std::vector<Point> points;
     for (int k = 0; k < 30; ++k) {
-      points.push_back(grid.centre(CellIndex::of(static_cast<int>(rng.below(static_cast<std::uint64_t>(grid.size()))))));
+      points.push_back(
+          grid.centre(CellIndex::of(static_cast<int>(rng.below(static_cast<std::uint64_t>(grid.size()))))));
     }
     const auto found = fit(points);
     RC_ASSERT(found.has_value());
@@ -65,9 +66,10 @@ TEST(FittingGrid, ShiftsWhatLiesBesideEveryGrid) {
 }
 
 TEST(FittingGrid, WhatIsNoCellIsToldWithItsPlaceAndHowFarItIs) {
-  EXPECT_EQ(fit({{0.5, 0.5}, {1.5, 0.5}, {2.8, 0.613}}, {std::nullopt, 1.0, 2, 0}).error().message,
-            "list.csv:4:3: error: x 2.8 m, y 0.613 m is no middle of a cell: H1 is 0.321 m away on a grid of 1 m (another "
-            "--pitch, or --snap '0.33 m' to move people that far)");
+  EXPECT_EQ(
+      fit({{0.5, 0.5}, {1.5, 0.5}, {2.8, 0.613}}, {std::nullopt, 1.0, 2, 0}).error().message,
+      "list.csv:4:3: error: x 2.8 m, y 0.613 m is no middle of a cell: H1 is 0.321 m away on a grid of 1 m (another "
+      "--pitch, or --snap '0.33 m' to move people that far)");
   const auto snapped = fit({{0.5, 0.5}, {1.5, 0.5}, {2.8, 0.613}}, {std::nullopt, 1.0, 2, 0.33});
   ASSERT_TRUE(snapped) << snapped.error();
   const Imported imported = with({{0.5, 0.5}, {1.5, 0.5}, {2.8, 0.613}});
@@ -79,15 +81,17 @@ TEST(FittingGrid, WhatIsNoCellIsToldWithItsPlaceAndHowFarItIs) {
 }
 
 TEST(FittingGrid, IsNoLargerThanAStage) {
-  EXPECT_EQ(fit({{0, 0.05}, {0.1, 0.05}, {9000.3, 0.05}}).error().message.substr(0, 32), "the places need a grid of 180011");
+  EXPECT_EQ(fit({{0, 0.05}, {0.1, 0.05}, {9000.3, 0.05}}).error().message.substr(0, 32),
+            "the places need a grid of 180011");
 }
 
 TEST(CellsOf, TwoPeopleOnOneCellAreTold) {
   const Imported imported = with({{0.5, 0.5}, {1.5, 0.5}, {1.4, 0.5}});
   const FittingGrid grid{*Grid::make(GridKind::square, 8, 4, 1), {}, 0.2};
-  EXPECT_EQ(cells_of(imported, grid).error().message,
-            "list.csv:4:3: error: performers p2 and p3 both stand on F1 in set 1 (count 1) (the first in list.csv:3; one "
-            "person on each cell)");
+  EXPECT_EQ(
+      cells_of(imported, grid).error().message,
+      "list.csv:4:3: error: performers p2 and p3 both stand on F1 in set 1 (count 1) (the first in list.csv:3; one "
+      "person on each cell)");
 }
 
 }  // namespace

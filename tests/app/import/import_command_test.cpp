@@ -67,7 +67,8 @@ TEST_F(ImportCommand, AShowLikeAnotherHasItsStagePeopleAndMusic) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(json::parse(ran.out)["plan"]["as_in_file"], true);
   for (const char* name : {"show", "back"}) {
-    ASSERT_EQ(test::footlight({"export", path(name) + "/show.yaml", "--csv", path(std::string(name) + "-csv")}).status, 0);
+    ASSERT_EQ(test::footlight({"export", path(name) + "/show.yaml", "--csv", path(std::string(name) + "-csv")}).status,
+              0);
   }
   // Sections are named anew; everything else is the same.
   const auto marks = [&](const char* folder) {
@@ -85,7 +86,8 @@ TEST_F(ImportCommand, WhetherThePlanIsTheFileIsSaidAndTrue) {
     Rng rng(seed);
     std::string yaml =
         "footlight: 1\ntitle: t\nstage:\n  grid: {columns: 11, rows: 8, pitch: 80 cm}\n  max_speed: 3 m/s\n"
-        "performers: {count: 9, groups: [{name: a, members: 1-4, colour: \"#FF0000\"}]}\nmusic: {tempo: 90}\nsections:\n";
+        "performers: {count: 9, groups: [{name: a, members: 1-4, colour: \"#FF0000\"}]}\nmusic: {tempo: "
+        "90}\nsections:\n";
     for (int s = 0; s < 4; ++s) {
       std::vector<int> cells(88);
       for (int c = 0; c < 88; ++c) cells[static_cast<std::size_t>(c)] = c;
@@ -126,25 +128,27 @@ TEST_F(ImportCommand, DrillCoordinatesWithTheirMusicMakeAShow) {
                 "B1,2,16,Side 1: On 45 yd ln,4.0 steps behind Front Hash (CH)\n"
                 "B2,1,0,Side 2: 4.0 steps outside 45 yd ln,On Front Hash (CH)\n"
                 "B2,2,16,Side 2: On 45 yd ln,4.0 steps behind Front Hash (CH)\n");
-  folder_.write("march.musicxml",
-                "<score-partwise><part-list/><part id=\"P1\"><measure number=\"1\"><attributes><divisions>1</divisions>"
-                "<time><beats>2</beats><beat-type>4</beat-type></time></attributes><sound tempo=\"120\"/><note><rest/>"
-                "<duration>2</duration></note></measure>"
-                "<measure number=\"2\"><direction><direction-type><words>rit.</words></direction-type></direction><note>"
-                "<rest/><duration>2</duration></note></measure>" +
-                    [] {
-                      std::string more;
-                      for (int k = 3; k <= 12; ++k) {
-                        more += "<measure>";
-                        if (k == 9) {
-                          more += "<direction><direction-type><rehearsal>A</rehearsal></direction-type></direction><sound "
-                                  "tempo=\"96\"/>";
-                        }
-                        more += "<note><rest/><duration>2</duration></note></measure>";
-                      }
-                      return more;
-                    }() +
-                    "</part></score-partwise>");
+  folder_.write(
+      "march.musicxml",
+      "<score-partwise><part-list/><part id=\"P1\"><measure number=\"1\"><attributes><divisions>1</divisions>"
+      "<time><beats>2</beats><beat-type>4</beat-type></time></attributes><sound tempo=\"120\"/><note><rest/>"
+      "<duration>2</duration></note></measure>"
+      "<measure number=\"2\"><direction><direction-type><words>rit.</words></direction-type></direction><note>"
+      "<rest/><duration>2</duration></note></measure>" +
+          [] {
+            std::string more;
+            for (int k = 3; k <= 12; ++k) {
+              more += "<measure>";
+              if (k == 9) {
+                more +=
+                    "<direction><direction-type><rehearsal>A</rehearsal></direction-type></direction><sound "
+                    "tempo=\"96\"/>";
+              }
+              more += "<note><rest/><duration>2</duration></note></measure>";
+            }
+            return more;
+          }() +
+          "</part></score-partwise>");
   const test::Ran ran = test::footlight({"import", path("field.csv"), path("march.musicxml"), "-o", path("drill")});
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(without(ran.out, folder_.path().string() + "/"),
@@ -160,14 +164,16 @@ TEST_F(ImportCommand, DrillCoordinatesWithTheirMusicMakeAShow) {
 }
 
 TEST_F(ImportCommand, MusicAloneIsPrintedAsAKey) {
-  const test::Ran made = test::run_program(
-      {"/usr/bin/python3", "-c",
-       "import sys\ntry:\n  import mido\nexcept ImportError: sys.exit(77)\n"
-       "m = mido.MidiFile(ticks_per_beat=480); t = mido.MidiTrack(); m.tracks.append(t)\n"
-       "t.append(mido.MetaMessage('set_tempo', tempo=500000)); t.append(mido.MetaMessage('time_signature', numerator=3, denominator=4))\n"
-       "t.append(mido.MetaMessage('marker', text='B', time=480 * 6)); t.append(mido.MetaMessage('set_tempo', tempo=600000))\n"
-       "t.append(mido.MetaMessage('end_of_track', time=480 * 6)); m.save(sys.argv[1])\n",
-       path("song.mid")});
+  const test::Ran made =
+      test::run_program({"/usr/bin/python3", "-c",
+                         "import sys\ntry:\n  import mido\nexcept ImportError: sys.exit(77)\n"
+                         "m = mido.MidiFile(ticks_per_beat=480); t = mido.MidiTrack(); m.tracks.append(t)\n"
+                         "t.append(mido.MetaMessage('set_tempo', tempo=500000)); "
+                         "t.append(mido.MetaMessage('time_signature', numerator=3, denominator=4))\n"
+                         "t.append(mido.MetaMessage('marker', text='B', time=480 * 6)); "
+                         "t.append(mido.MetaMessage('set_tempo', tempo=600000))\n"
+                         "t.append(mido.MetaMessage('end_of_track', time=480 * 6)); m.save(sys.argv[1])\n",
+                         path("song.mid")});
   if (made.status == 77) GTEST_SKIP() << "python3-mido is not here";
   ASSERT_EQ(made.status, 0) << made.err;
   const test::Ran ran = test::footlight({"import", path("song.mid")});
