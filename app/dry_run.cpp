@@ -272,19 +272,9 @@ DryRunReport DryRun::report() {
     const sim::BusUse use = simulated_.use(BusIndex::of(b));
     const controller::BusCounters& counters = wires_->loops[b]->counters();
     BusReport bus;
-    bus.name = rig_.buses[b].name;
-    bus.kind = std::string(to_text(rig_.buses[b].kind));
+    static_cast<BusFigures&>(bus) = figures_of(rig_, BusIndex::of(b), counters, *wires_->drivers[b]);
     bus.utilisation = to_seconds(use.busy - use_before_.at(b).busy) / std::max(1e-9, report_.run_s);
-    bus.nodes = static_cast<std::uint64_t>(
-        std::ranges::count_if(rig_.nodes, [&](const Node& node) { return node.bus == BusIndex::of(b); }));
     bus.frames = use.frames;
-    bus.deliveries = counters.deliveries;
-    bus.retries = counters.retries;
-    bus.misses = counters.misses;
-    bus.quarantines = counters.quarantines;
-    bus.boots = counters.boots;
-    bus.late_latches = counters.late_latches;
-    bus.worst_lateness_ms = to_seconds(counters.worst_lateness) * 1e3;
     report_.deliveries += counters.deliveries;
     report_.retries += counters.retries;
     report_.buses.push_back(std::move(bus));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bus_figures.hpp"
 #include "core/clock.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
@@ -45,19 +46,9 @@ struct CueReport {
   std::vector<WrongMarker> first;  ///< at most 10 of the wrong ones
 };
 
-struct BusReport {
-  std::string name;
-  std::string kind;
+struct BusReport : BusFigures {
   double utilisation = 0;  ///< share of wire time since the show began, retries included
-  std::uint64_t nodes = 0;
   std::uint64_t frames = 0;
-  std::uint64_t deliveries = 0;
-  std::uint64_t retries = 0;
-  std::uint64_t misses = 0;
-  std::uint64_t quarantines = 0;
-  std::uint64_t boots = 0;
-  std::uint64_t late_latches = 0;
-  double worst_lateness_ms = 0;  ///< of a latch's last bit
 };
 
 struct DryRunReport {

@@ -19,19 +19,14 @@ Json cue_json(const CueReport& cue) {
           {"wrong", cue.wrong},   {"exempt", cue.exempt}, {"first", std::move(first)}};
 }
 
+double worst_lateness_ms(const BusReport& bus) { return to_seconds(bus.worst_lateness) * 1e3; }
+
 Json bus_json(const BusReport& bus) {
-  return {{"name", bus.name},
-          {"kind", bus.kind},
-          {"utilisation", bus.utilisation},
-          {"deliveries", bus.deliveries},
-          {"nodes", bus.nodes},
-          {"frames", bus.frames},
-          {"retries", bus.retries},
-          {"misses", bus.misses},
-          {"quarantines", bus.quarantines},
-          {"boots", bus.boots},
-          {"late_latches", bus.late_latches},
-          {"worst_lateness_ms", bus.worst_lateness_ms}};
+  Json out = figures_json(bus);
+  out["utilisation"] = bus.utilisation;
+  out["frames"] = bus.frames;
+  out["worst_lateness_ms"] = worst_lateness_ms(bus);
+  return out;
 }
 
 }  // namespace
@@ -75,8 +70,9 @@ std::string dry_run_text(const DryRunReport& report) {
   for (const BusReport& bus : report.buses) {
     text += fmt::format("  {:<16} {:<11} {:>6} {:>5.1f}% {:>11} {:>8} {:>7} {:>7} {:>6.1f} ms\n", bus.name, bus.kind,
                         bus.nodes, bus.utilisation * 100, bus.deliveries, bus.retries, bus.misses, bus.boots,
-                        bus.worst_lateness_ms);
+                        worst_lateness_ms(bus));
   }
+  for (const BusReport& bus : report.buses) text += assumption_line(bus);
   text += fmt::format("lamps that could mislead: {} with one pattern for all, {} with patterns\n",
                       report.confusion_before, report.confusion_after);
   if (!report.dead.empty()) {

@@ -17,6 +17,8 @@ using Kind = FoundNode::Kind;
 constexpr int kSweeps = 2;  // over all addresses
 constexpr Duration kRetry = milliseconds(1);
 constexpr int kAgain = 3;
+constexpr std::uint16_t kEverybody = 0;
+constexpr int kAsksOfTarget = 4;  // that nobody is at a new address must be sure
 constexpr Duration kSettle = milliseconds(10);
 constexpr Duration kGiveUpDown = milliseconds(1000);
 constexpr Duration kRestart = milliseconds(500);  // a node that has moved may want a moment
@@ -110,14 +112,18 @@ void BusService::set_address(std::uint16_t from, std::optional<std::uint32_t> un
   counts_after_restart_ = counts_after_restart;
   by_address_.clear();
   for (unsigned round = 0; round < kRounds; ++round) questions_.push_back({Task::probe, from, round});
-  questions_.push_back({Task::probe, to, 0});
-  questions_.push_back({Task::probe, to, 0});
+  for (int time = 0; time < kAsksOfTarget; ++time) questions_.push_back({Task::probe, to, 0});
   phase_ = Phase::before_move;
 }
 
 void BusService::ask_health(const std::vector<std::uint16_t>& addresses) {
   if (refuse(Task::health)) return;
+  const bool clocks = driver_.refusal(Task::clock).empty();
+  if (clocks) questions_.push_back({Task::clock, kEverybody});
   for (const std::uint16_t address : addresses) questions_.push_back({Task::health, address});
+  for (const std::uint16_t address : addresses) {
+    if (clocks) questions_.push_back({Task::clock, address});
+  }
   phase_ = Phase::asking;
 }
 
@@ -155,6 +161,9 @@ SendStatus BusService::send(const Question& question) {
       return driver_.set_address(question.address, question.unique_id, question.to, now_);
     case Task::health:
       return driver_.ask_health(question.address, now_);
+    case Task::clock:
+      if (question.address == kEverybody) return driver_.sync_time(now_ - kStart, 1, now_);
+      return driver_.ask_clock(question.address, now_);
   }
   return SendStatus::down;
 }
@@ -201,6 +210,10 @@ void BusService::on_answer(const ServiceAnswer& answer) {
   if (!under_way_) return;
   answers_.push_back(answer);
   NodeHealth& node = health_of(under_way_->address);
+  if (under_way_->task == Task::clock) {
+    node.values.insert(node.values.end(), answer.health.begin(), answer.health.end());
+    return;
+  }
   if (answer.kind == ServiceAnswer::Kind::found || answer.kind == ServiceAnswer::Kind::done) {
     node.last_seen = now_;
     if (answers_.size() == 1) node.latency.add(now_ - asked_at_);
@@ -208,9 +221,15 @@ void BusService::on_answer(const ServiceAnswer& answer) {
   }
 }
 
+void BusService::ask_again(Question question) {
+  ++question.again;
+  questions_.push_front(question);
+  retry_at_ = now_ + kSettle;
+}
+
 void BusService::conclude_question() {
   const Question question = *std::exchange(under_way_, std::nullopt);
-  NodeHealth& node = health_of(question.address);
+  if (question.task == Task::clock && question.address == kEverybody) return;  // nobody answers
   const auto count = [&](ServiceAnswer::Kind kind) { return std::ranges::count(answers_, kind, &ServiceAnswer::kind); };
   const auto understood = count(ServiceAnswer::Kind::found) + count(ServiceAnswer::Kind::done);
   const bool garbled = count(ServiceAnswer::Kind::garbled) > 0;
@@ -218,11 +237,14 @@ void BusService::conclude_question() {
   if (garbled && understood == 0 && question.task == Task::probe && phase_ != Phase::testing &&
       question.again < kAgain) {
     // Perhaps the end of somebody else's answer: it counts when it comes again.
-    questions_.push_front(question);
-    ++questions_.front().again;
-    retry_at_ = now_ + kSettle;
+    ask_again(question);
     return;
   }
+  if (question.task == Task::clock) {
+    if (understood == 0 && question.again + 1 < kAgain) ask_again(question);
+    return;
+  }
+  NodeHealth& node = health_of(question.address);
   ++node.asked;
   node.answered += understood > 0 ? 1 : 0;
   node.garbled += understood == 0 && garbled ? 1 : 0;
@@ -244,9 +266,7 @@ void BusService::conclude_question() {
   }
   if (question.task == Task::probe || understood > 0) return;
   if (!refused && question.again + 1 < kAgain) {
-    questions_.push_front(question);
-    ++questions_.front().again;
-    retry_at_ = now_ + kSettle;
+    ask_again(question);
     return;
   }
   const std::string who = "the node of address " + std::to_string(question.address);

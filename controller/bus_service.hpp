@@ -50,6 +50,8 @@ class BusService final : private drivers::EventSink {
   /// @param unique_id which of several devices at `from`
   void set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
                    bool counts_after_restart);
+  /// Battery and the like; where nodes keep time, they are told it first and asked for it last, and how far their
+  /// clocks are off is among the values.
   void ask_health(const std::vector<std::uint16_t>& addresses);
   /// Asks the nodes in turn, in the order given, until `duration` is over.
   void test(const std::vector<std::uint16_t>& addresses, Duration duration);
@@ -83,6 +85,7 @@ class BusService final : private drivers::EventSink {
   bool refuse(drivers::Task task);
   void fail(std::string message);
   drivers::SendStatus send(const Question& question);
+  void ask_again(Question question);
   void conclude_question();
   void next_phase();
   void conclude_scan();

@@ -13,6 +13,8 @@ std::string_view to_text(Task task) {
       return "set-address";
     case Task::health:
       return "health";
+    case Task::clock:
+      return "clock";
   }
   return "probe";
 }

@@ -65,7 +65,7 @@ struct DeviceEvent {
 };
 
 /// What a technician may ask of a device.
-enum class Task : std::uint8_t { probe, identify, set_address, health };
+enum class Task : std::uint8_t { probe, identify, set_address, health, clock };
 
 [[nodiscard]] std::string_view to_text(Task task);
 
@@ -204,6 +204,10 @@ class Driver {
   }
   virtual SendStatus ask_health(std::uint16_t /*address*/, Instant /*now*/) {
     FL_CHECK(false && "a language that can tell health");
+  }
+  /// How far is its clock from the time that `sync_time` has told last? Told as health.
+  virtual SendStatus ask_clock(std::uint16_t /*address*/, Instant /*now*/) {
+    FL_CHECK(false && "a language whose nodes have clocks");
   }
 
   /// Takes what has arrived, gives up what has waited too long.

@@ -26,24 +26,15 @@ double ratio(double ours_ms, double bare_ms) {
 }
 
 Json bus_json(const LiveBusReport& bus) {
-  return {{"name", bus.name},
-          {"kind", bus.kind},
-          {"url", bus.url},
-          {"nodes", bus.nodes},
-          {"deliveries", bus.deliveries},
-          {"unverified", bus.unverified},
-          {"retries", bus.retries},
-          {"misses", bus.misses},
-          {"quarantines", bus.quarantines},
-          {"boots", bus.boots},
-          {"latches", bus.latches},
-          {"late_latches", bus.late_latches},
-          {"latch_lateness", lateness_json(bus.latch)},
-          {"wake_lateness", lateness_json(bus.wake)},
-          {"cpu_share", bus.cpu_share},
-          {"unconfirmed", bus.unconfirmed},
-          {"silent", bus.silent},
-          {"trouble", bus.trouble}};
+  Json out = figures_json(bus);
+  out["url"] = bus.url;
+  out["latch_lateness"] = lateness_json(bus.latch);
+  out["wake_lateness"] = lateness_json(bus.wake);
+  out["cpu_share"] = bus.cpu_share;
+  out["unconfirmed"] = bus.unconfirmed;
+  out["silent"] = bus.silent;
+  out["trouble"] = bus.trouble;
+  return out;
 }
 
 std::string lateness_row(const char* what, const LatenessReport& lateness) {
@@ -104,6 +95,7 @@ std::string live_text(const LiveReport& report) {
                         bus.kind, bus.nodes, bus.deliveries, bus.unverified, bus.retries, bus.misses, bus.boots,
                         bus.late_latches, bus.latch.worst_ms, bus.cpu_share * 100);
   }
+  for (const LiveBusReport& bus : report.buses) text += assumption_line(bus);
   text += fmt::format("  {:<24} {:>8} {:>9} {:>9} {:>9} {:>9}\n", "lateness", "times", "p50", "p99", "p99.9", "worst");
   for (const LiveBusReport& bus : report.buses) text += lateness_row(("latch, " + bus.name).c_str(), bus.latch);
   text += lateness_row("bus threads waking", report.wake) + lateness_row("a bare timer", report.bare);

@@ -10,9 +10,10 @@
 
 #include <fmt/format.h>
 
+#include "app/live/bare_timer.hpp"
 #include "app/live/bus_thread.hpp"
+#include "app/live/cue_thread.hpp"
 #include "app/live/shared_target.hpp"
-#include "app/live/waiting.hpp"
 #include "app/show_on_wires.hpp"
 #include "app/wire_log/logged_ports.hpp"
 #include "controller/lateness.hpp"
@@ -24,137 +25,14 @@ namespace {
 using controller::BusTarget;
 using controller::Lateness;
 
-constexpr Duration kPublish = milliseconds(50);  // the cue thread says at least so often that it lives
 constexpr Duration kLookOn = milliseconds(20);
 constexpr Duration kPostRoll = milliseconds(2500);  // time for the last lamps to be right
-constexpr Duration kBareTimer = milliseconds(10);
 
 LatenessReport report_of(const Lateness& lateness) {
   const auto ms = [](Duration duration) { return to_seconds(duration) * 1e3; };
   return {lateness.count(), ms(lateness.quantile(0.5)), ms(lateness.quantile(0.99)), ms(lateness.quantile(0.999)),
           ms(lateness.worst())};
 }
-
-/// A thread that sleeps until an instant and does nothing else: what this machine can do, to measure the others by.
-class BareTimer {
- public:
-  explicit BareTimer(const Clock& clock) : clock_(clock), waiting_(clock) {
-    thread_ = std::thread([this] { run(); });
-  }
-  ~BareTimer() { stop(); }
-  BareTimer(const BareTimer&) = delete;
-  BareTimer& operator=(const BareTimer&) = delete;
-  void stop() {
-    if (!thread_.joinable()) return;
-    stopping_.store(true, std::memory_order_relaxed);
-    thread_.join();
-  }
-  [[nodiscard]] const Lateness& lateness() const { return lateness_; }
-
- private:
-  void run() noexcept {
-    (void)ask_for_real_time();
-    Instant due = clock_.now() + kBareTimer;
-    while (!stopping_.load(std::memory_order_relaxed)) {
-      waiting_.until(due);
-      lateness_.add(clock_.now() - due);
-      due = clock_.now() + kBareTimer;
-    }
-  }
-
-  const Clock& clock_;
-  Waiting waiting_;
-  std::atomic<bool> stopping_{false};
-  Lateness lateness_;
-  std::thread thread_;
-};
-
-/// The cue thread: steps the engine at its instants and tells the buses.
-class CueThread {
- public:
-  CueThread(ShowOnWires& show, SharedTarget& target, const Clock& clock)
-      : show_(show), target_(target), clock_(clock), waiting_(clock), go_at_(show.plays.size(), kNever) {}
-  ~CueThread() { stop(); }
-  CueThread(const CueThread&) = delete;
-  CueThread& operator=(const CueThread&) = delete;
-
-  /// @param news called when the target has changed; must not block
-  void start(std::function<void()> news) {
-    news_ = std::move(news);
-    publish(clock_.now());
-    thread_ = std::thread([this] { run(); });
-  }
-  void stop() {
-    if (!thread_.joinable()) return;
-    stopping_.store(true, std::memory_order_relaxed);
-    waiting_.wake();
-    thread_.join();
-  }
-  void press_go() noexcept {
-    presses_.fetch_add(1, std::memory_order_relaxed);
-    waiting_.wake();
-  }
-  void press_go_whenever_it_waits() noexcept {
-    by_itself_.store(true, std::memory_order_relaxed);
-    waiting_.wake();
-  }
-  [[nodiscard]] bool finished() const noexcept { return finished_.load(std::memory_order_relaxed); }
-  // After `stop`.
-  [[nodiscard]] const std::vector<Instant>& go_at() const { return go_at_; }
-  [[nodiscard]] bool real_time() const { return real_time_; }
-
- private:
-  void run() noexcept {
-    real_time_ = ask_for_real_time();
-    while (!stopping_.load(std::memory_order_relaxed)) {
-      const Instant now = clock_.now();
-      show_.engine->step(now);
-      press(now);
-      publish(now);
-      finished_.store(show_.engine->finished(), std::memory_order_relaxed);
-      Instant next = std::min(now + kPublish, show_.engine->next_event());
-      if (by_itself_.load(std::memory_order_relaxed)) next = std::min(next, go_.next());
-      waiting_.until(next);
-    }
-  }
-
-  void press(Instant now) noexcept {
-    const auto standby = show_.engine->standby();
-    bool pressed = false;
-    if (presses_.exchange(0, std::memory_order_relaxed) > 0) {  // several at once are one
-      pressed = show_.engine->go(now) == controller::GoAnswer::started;
-    } else if (by_itself_.load(std::memory_order_relaxed)) {
-      if (!told_) go_ = GoWhenWaiting(now);
-      told_ = true;
-      pressed = go_.step(*show_.engine, now);
-    }
-    if (pressed && standby) go_at_[*standby] = now;
-  }
-
-  void publish(Instant now) noexcept {
-    const BusTarget target = show_.engine->target();
-    target_.publish(target, now);
-    const bool news = target.current != last_.current || target.next_at != last_.next_at;
-    last_ = target;
-    if (news) news_();
-  }
-
-  ShowOnWires& show_;
-  SharedTarget& target_;
-  const Clock& clock_;
-  Waiting waiting_;
-  std::function<void()> news_;
-  std::atomic<bool> stopping_{false};
-  std::atomic<bool> finished_{false};
-  std::atomic<bool> by_itself_{false};
-  std::atomic<int> presses_{0};
-  GoWhenWaiting go_;
-  bool told_ = false;
-  bool real_time_ = false;
-  BusTarget last_;
-  std::vector<Instant> go_at_;  ///< by cue
-  std::thread thread_;
-};
 
 /// One run: the threads, and what the calling thread sees of them.
 class LiveRun {
@@ -291,21 +169,10 @@ LiveReport LiveRun::report(const BareTimer& bare, Duration run) {
 
 LiveBusReport LiveRun::report_bus(std::size_t b, Duration run) const {
   const BusThread& thread = *threads_[b];
-  const controller::BusCounters& counters = thread.loop().counters();
   LiveBusReport bus;
-  bus.name = rig_.buses[b].name;
-  bus.kind = std::string(to_text(rig_.buses[b].kind));
+  static_cast<BusFigures&>(bus) = figures_of(rig_, BusIndex::of(b), thread.loop().counters(), *wires_.drivers[b]);
   bus.url = rig_.buses[b].url;
   bus.trouble = drivers::trouble_of(ports_[b]);
-  bus.nodes = static_cast<std::uint64_t>(std::ranges::count(rig_.nodes, BusIndex::of(b), &Node::bus));
-  bus.deliveries = counters.deliveries;
-  bus.unverified = counters.unverified;
-  bus.retries = counters.retries;
-  bus.misses = counters.misses;
-  bus.quarantines = counters.quarantines;
-  bus.boots = counters.boots;
-  bus.latches = counters.latches;
-  bus.late_latches = counters.late_latches;
   bus.latch = report_of(thread.loop().lateness());
   bus.wake = report_of(thread.wake_lateness());
   bus.cpu_share = to_seconds(thread.cpu()) / std::max(1e-9, to_seconds(run));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bus_figures.hpp"
 #include "app/wire_log/wire_log.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
@@ -25,19 +26,8 @@ struct LatenessReport {
   double worst_ms = 0;
 };
 
-struct LiveBusReport {
-  std::string name;
-  std::string kind;
+struct LiveBusReport : BusFigures {
   std::string url;
-  std::uint64_t nodes = 0;
-  std::uint64_t deliveries = 0;
-  std::uint64_t unverified = 0;
-  std::uint64_t retries = 0;
-  std::uint64_t misses = 0;
-  std::uint64_t quarantines = 0;
-  std::uint64_t boots = 0;
-  std::uint64_t latches = 0;
-  std::uint64_t late_latches = 0;
   LatenessReport latch;             ///< of the last bit of the latches, as far as the bus can know
   LatenessReport wake;              ///< of the thread: when it woke, behind when it wanted to
   double cpu_share = 0;             ///< processor time of the thread over the time of the run

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a technician does, with the real drivers on simulated buses.
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -231,6 +232,24 @@ TEST(Service, HealthTellsBatteryLatencyAndWhoIsSilent) {
       EXPECT_TRUE(node.last_seen);
     }
     EXPECT_EQ(silent, 1) << to_text(kind);
+  }
+}
+
+TEST(Service, HealthTellsHowFarTheClocksOfSerialNodesAreOff) {
+  Bench bench(BusKind::serial, {{1}, {2}});
+  bench.service->ask_health({1, 2});
+  EXPECT_EQ(bench.run(), "");
+  ASSERT_EQ(bench.service->health().size(), 2U);
+  for (const auto& node : bench.service->health()) {
+    EXPECT_EQ(node.asked, 1U) << "the question for the clock is not counted";
+    const auto value = [&](const std::string& name) {
+      const auto found = std::ranges::find(node.values, name, &drivers::HealthValue::name);
+      EXPECT_NE(found, node.values.end()) << name;
+      return found == node.values.end() ? -1e9 : found->value;
+    };
+    EXPECT_EQ(value("battery"), 100);
+    EXPECT_EQ(value("TIME frames"), 1);
+    EXPECT_NEAR(value("clock error"), 0, 0.01) << "in ms; simulated clocks are right";
   }
 }
 

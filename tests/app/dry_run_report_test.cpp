@@ -46,6 +46,15 @@ TEST(DryRunReport, JsonHasTheFiguresThatProgramsRead) {
   EXPECT_EQ(json["buses"][0]["deliveries"], 1100);
 }
 
+TEST(DryRunReport, SaysWhatIsAssumedOfBusesWhoseDevicesProveNothing) {
+  DryRunReport with_foreign = report();
+  EXPECT_EQ(dry_run_text(with_foreign).find("unverified"), std::string::npos);
+  with_foreign.buses[0].assumes = "what is acknowledged is shown";
+  EXPECT_NE(dry_run_text(with_foreign).find("  unverified on can-1: what is acknowledged is shown\n"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(dry_run_json(with_foreign))["buses"][0]["assumes"], "what is acknowledged is shown");
+}
+
 TEST(DryRunReport, AFailureNamesCueAndMarkers) {
   EXPECT_EQ(dry_run_failure(report()),
             "cue 2.5 \"Bow\": 2 markers wrong at its end (156.000 s): can-1-5 channel 4 shows look 255 instead of 2; "

@@ -46,7 +46,7 @@ std::string trouble(const DryRunReport& report) {
   for (const BusReport& bus : report.buses) {
     text << bus.name << " " << bus.kind << " use " << bus.utilisation << " deliveries " << bus.deliveries << " retries "
          << bus.retries << " misses " << bus.misses << " quarantines " << bus.quarantines << " boots " << bus.boots
-         << " late latches " << bus.late_latches << " worst " << bus.worst_lateness_ms << " ms\n";
+         << " late latches " << bus.late_latches << " worst " << to_seconds(bus.worst_lateness) * 1e3 << " ms\n";
   }
   text << "right " << report.right_share << " late " << report.late << " wrong_s " << report.wrong_s << "\n";
   return text.str();

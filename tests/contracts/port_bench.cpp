@@ -128,26 +128,54 @@ void write_all(int file, const Bytes& bytes) {
   EXPECT_EQ(::write(file, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
 }
 
-class TerminalSerial final : public SerialBench, private FarEnd {
+/// A real port whose far end is a thread.
+template <class PortType>
+class RealPort : public PortBench<PortType>, protected FarEnd {
  public:
-  TerminalSerial() : port_(drivers::open_serial(terminal_.path(), {}).value()) { start(); }
-  ~TerminalSerial() override { end(); }
-  drivers::ByteStream& port() override { return *port_; }
+  PortType& port() override { return *port_; }
   void pass() override { std::this_thread::sleep_for(milliseconds(1)); }
   LookIndex shown(std::uint8_t address) override { return FarEnd::shown(address); }
   bool unplug() override {
     end();
+    return true;
+  }
+  void replug() override { start(); }
+  [[nodiscard]] bool real() const override { return true; }
+
+ protected:
+  virtual void start() = 0;
+
+  std::unique_ptr<PortType> port_;
+};
+
+/// One on a pseudo-terminal.
+template <class PortType>
+class OnTerminal : public RealPort<PortType> {
+ public:
+  bool unplug() override {
+    this->end();
     terminal_.unplug();
     return true;
   }
   void replug() override {
     terminal_.plug();
-    start();
+    this->start();
   }
-  [[nodiscard]] bool real() const override { return true; }
+
+ protected:
+  PluggedTerminal terminal_;
+};
+
+class TerminalSerial final : public OnTerminal<drivers::ByteStream> {
+ public:
+  TerminalSerial() {
+    port_ = drivers::open_serial(terminal_.path(), {}).value();
+    TerminalSerial::start();
+  }
+  ~TerminalSerial() override { end(); }
 
  private:
-  void start() {
+  void start() override {
     begin([this] {
       while (readable(terminal_.near())) {
         const Bytes heard = read_some(terminal_.near());
@@ -159,36 +187,25 @@ class TerminalSerial final : public SerialBench, private FarEnd {
 
   std::array<sim::SerialMarker, 2> markers_{sim::SerialMarker(kFirstMarker, models_[0]),
                                             sim::SerialMarker(kSecondMarker, models_[1])};
-  PluggedTerminal terminal_;
-  std::unique_ptr<drivers::ByteStream> port_;
 };
 
-class ModbusFarEnd : public FarEnd {
- protected:
-  std::array<sim::ModbusMarker, 2> markers_{sim::ModbusMarker(kFirstMarker, sim::footlight_profile(), models_[0]),
-                                            sim::ModbusMarker(kSecondMarker, sim::footlight_profile(), models_[1])};
-};
+using ModbusMarkers = std::array<sim::ModbusMarker, 2>;
 
-class TerminalRtu final : public ModbusBench, private ModbusFarEnd {
+ModbusMarkers markers_of(std::array<sim::NodeModel, 2>& models) {
+  return {sim::ModbusMarker(kFirstMarker, sim::footlight_profile(), models[0]),
+          sim::ModbusMarker(kSecondMarker, sim::footlight_profile(), models[1])};
+}
+
+class TerminalRtu final : public OnTerminal<drivers::ModbusPort> {
  public:
-  TerminalRtu() : port_(drivers::open_modbus_rtu(terminal_.path(), {.characters = Characters::e1}).value()) { start(); }
+  TerminalRtu() {
+    port_ = drivers::open_modbus_rtu(terminal_.path(), {.characters = Characters::e1}).value();
+    TerminalRtu::start();
+  }
   ~TerminalRtu() override { end(); }
-  drivers::ModbusPort& port() override { return *port_; }
-  void pass() override { std::this_thread::sleep_for(milliseconds(1)); }
-  LookIndex shown(std::uint8_t address) override { return FarEnd::shown(address); }
-  bool unplug() override {
-    end();
-    terminal_.unplug();
-    return true;
-  }
-  void replug() override {
-    terminal_.plug();
-    start();
-  }
-  [[nodiscard]] bool real() const override { return true; }
 
  private:
-  void start() {
+  void start() override {
     begin([this] {
       Bytes heard;
       while (readable(terminal_.near())) {
@@ -209,11 +226,10 @@ class TerminalRtu final : public ModbusBench, private ModbusFarEnd {
     });
   }
 
-  PluggedTerminal terminal_;
-  std::unique_ptr<drivers::ModbusPort> port_;
+  ModbusMarkers markers_ = markers_of(models_);
 };
 
-class LoopbackTcp final : public ModbusBench, private ModbusFarEnd {
+class LoopbackTcp final : public RealPort<drivers::ModbusPort> {
  public:
   LoopbackTcp() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
@@ -224,17 +240,12 @@ class LoopbackTcp final : public ModbusBench, private ModbusFarEnd {
     EXPECT_EQ(::listen(listener_.get(), 8), 0);
     EXPECT_EQ(::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &length), 0);
     port_ = drivers::open_modbus_tcp("127.0.0.1", ntohs(address.sin_port), {kFirstMarker, kSecondMarker}).value();
-    replug();
+    LoopbackTcp::start();
   }
   ~LoopbackTcp() override { end(); }
-  drivers::ModbusPort& port() override { return *port_; }
-  void pass() override { std::this_thread::sleep_for(milliseconds(1)); }
-  LookIndex shown(std::uint8_t address) override { return FarEnd::shown(address); }
-  bool unplug() override {
-    end();
-    return true;
-  }
-  void replug() override {
+
+ private:
+  void start() override {
     begin([this] {
       while (readable(listener_.get())) {
         const FileDescriptor connection(::accept(listener_.get(), nullptr, nullptr));
@@ -242,9 +253,6 @@ class LoopbackTcp final : public ModbusBench, private ModbusFarEnd {
       }
     });
   }
-  [[nodiscard]] bool real() const override { return true; }
-
- private:
   void serve(int connection) {
     Bytes heard;
     while (readable(connection)) {
@@ -262,8 +270,8 @@ class LoopbackTcp final : public ModbusBench, private ModbusFarEnd {
     }
   }
 
+  ModbusMarkers markers_ = markers_of(models_);
   FileDescriptor listener_;
-  std::unique_ptr<drivers::ModbusPort> port_;
 };
 
 }  // namespace

@@ -274,7 +274,7 @@ TEST_P(DriverContract, WhatIsNotProvedIsSaid) {
 }
 
 TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
-  for (const Task task : {Task::probe, Task::identify, Task::set_address, Task::health}) {
+  for (const Task task : {Task::probe, Task::identify, Task::set_address, Task::health, Task::clock}) {
     const std::string_view refusal = driver().refusal(task);
     if (!refusal.empty()) {
       EXPECT_GT(refusal.size(), 20U) << refusal;
@@ -291,6 +291,8 @@ TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
           return driver().set_address(7, 0x12345678, 11, bench_->now);
         case Task::health:
           return driver().ask_health(7, bench_->now);
+        case Task::clock:
+          return driver().ask_clock(7, bench_->now);
       }
       return SendStatus::down;
     };

@@ -60,6 +60,7 @@ TEST(SerialGolden, EveryFrameOfTheControllerIsAsDocumented) {
   EXPECT_EQ(wire(driver.probe(7, 1, now)), golden.bytes("who"));
   EXPECT_EQ(wire(driver.set_address(7, 0x12345678, 9, now)), golden.bytes("address"));
   EXPECT_EQ(wire(driver.ask_health(7, now)), golden.bytes("ask-health"));
+  EXPECT_EQ(wire(driver.ask_clock(7, now)), golden.bytes("clock"));
 }
 
 TEST(SerialGolden, ATechniciansAnswersAreUnderstood) {
@@ -90,7 +91,19 @@ TEST(SerialGolden, ATechniciansAnswersAreUnderstood) {
   EXPECT_DOUBLE_EQ(health.health[1].value, 23.456);
   EXPECT_EQ(health.health[2].value, -4);
   EXPECT_EQ(health.health[3].value, 100'000);
-  EXPECT_EQ(log.answers.size(), 5U) << "each once";
+  const ServiceAnswer untold = hear(driver.ask_clock(7, now), "clock-answer");
+  ASSERT_EQ(untold.health.size(), 1U) << "nobody has told it the time, so nobody knows how far it is off";
+  EXPECT_EQ(untold.health[0].value, 5);
+  const Instant told_at = now + driver.sync_time_time();
+  EXPECT_EQ(driver.sync_time(microseconds(3'661'234'567) - driver.sync_time_time(), 1, now), SendStatus::accepted);
+  now += milliseconds(100);
+  driver.step(now, log);
+  const Instant asked_at = now + port.wire_time(footlight_serial::frame_length(0));
+  const ServiceAnswer clock = hear(driver.ask_clock(7, now), "clock-answer");
+  ASSERT_EQ(clock.health.size(), 2U);
+  EXPECT_EQ(clock.health[1].name, "clock error");
+  EXPECT_NEAR(clock.health[1].value, 0.432 - to_seconds(asked_at - told_at) * 1e3, 1e-6);
+  EXPECT_EQ(log.answers.size(), 7U) << "each once";
   EXPECT_TRUE(log.events.empty());
   hear(driver.send_content(kSeven, 3, 17, {true, 64, 250, 3'662'000, 500}, now), "receipt-content");
   ASSERT_EQ(log.count(Kind::content), 1U);

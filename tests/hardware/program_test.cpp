@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program itself on a CAN interface of the kernel: `footlight sim` on one side, `footlight run`, `footlight devices`
-// and can-utils on the other.
+// The program itself on a CAN interface of the kernel: `footlight sim` on one side, `footlight run`, `footlight
+// devices` and can-utils on the other.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -61,9 +61,7 @@ class ProgramOnVcan : public ::testing::Test {
     run(program("sim s/show.yaml --can far=vcan0 --dir ports --json >sim.jsonl 2>sim.err & echo $! >sim.pid"));
     EXPECT_TRUE(eventually([] { return text_of("sim.jsonl").ends_with("\n"); }, seconds(30))) << text_of("sim.err");
   }
-  ~ProgramOnVcan() override {
-    run("kill -KILL $(cat sim.pid) 2>/dev/null; ip link del vcan0");
-  }
+  ~ProgramOnVcan() override { run("kill -KILL $(cat sim.pid) 2>/dev/null; ip link del vcan0"); }
   static std::string program(const std::string& arguments) { return std::string(kProgram) + " " + arguments; }
 
   /// What a command of the program says for other programs.

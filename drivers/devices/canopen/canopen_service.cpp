@@ -81,6 +81,7 @@ void note(ServiceAnswer& answer, ObjectPlace place, const std::vector<std::uint8
 
 std::string_view CanopenDriver::refusal(Task task) const {
   if (task == Task::set_address) return "the id of a CANopen node is set on the device";
+  if (task == Task::clock) return "CANopen markers keep no show time";
   return {};
 }
 

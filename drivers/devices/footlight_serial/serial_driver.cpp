@@ -97,7 +97,10 @@ Duration SerialDriver::sync_time_time() const { return wire_time(footlight_seria
 SendStatus SerialDriver::sync_time(Duration show_time, double rate, Instant now) {
   // Nodes take the time at the frame's last byte, which leaves so much later.
   const auto ahead = Duration(std::llround(static_cast<double>(sync_time_time().count()) * rate));
-  return send(footlight_serial::time(plan_byte_, std::max(Duration{}, show_time + ahead), rate), std::nullopt, 0, now);
+  const Duration at_end = std::max(Duration{}, show_time + ahead);
+  const SendStatus status = send(footlight_serial::time(plan_byte_, at_end, rate), std::nullopt, 0, now);
+  if (status == SendStatus::accepted) told_ = {at_end, now + sync_time_time(), rate};
+  return status;
 }
 
 SendStatus SerialDriver::serve(const Frame& frame, Task task, std::size_t answer_bytes, Instant now) {
@@ -141,6 +144,21 @@ SendStatus SerialDriver::set_address(std::uint16_t from, std::optional<std::uint
 SendStatus SerialDriver::ask_health(std::uint16_t address, Instant now) {
   return serve(footlight_serial::health_request(static_cast<std::uint8_t>(address), plan_byte_), Task::health,
                footlight_serial::kHealthBody, now);
+}
+
+SendStatus SerialDriver::ask_clock(std::uint16_t address, Instant now) {
+  const Frame frame = footlight_serial::clock_request(static_cast<std::uint8_t>(address), plan_byte_);
+  const SendStatus status = serve(frame, Task::clock, footlight_serial::kClockBody, now);
+  if (status == SendStatus::accepted) clock_asked_at_ = now + wire_time(frame);
+  return status;
+}
+
+std::vector<HealthValue> SerialDriver::clock_values(const footlight_serial::NodeClock& clock) const {
+  std::vector<HealthValue> values{{"TIME frames", static_cast<double>(clock.times_taken), "taken"}};
+  if (!clock.set || !told_) return values;
+  const double since_s = to_seconds(clock_asked_at_ - told_->at) * told_->rate;
+  values.push_back({"clock error", (to_seconds(clock.show_time - told_->show_time) - since_s) * 1e3, "ms"});
+  return values;
 }
 
 SendStatus SerialDriver::send(const Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
@@ -204,6 +222,10 @@ bool SerialDriver::tell_service(const Frame& frame, EventSink& events) {
     auto health = decode_health(frame);
     if (!health) return false;
     answer.health = std::move(*health);
+  } else if (frame.command == Command::clock) {
+    const auto clock = footlight_serial::decode_clock(frame);
+    if (!clock) return false;
+    answer.health = clock_values(*clock);
   } else if (!decode_status(frame)) {
     return false;
   }

@@ -55,6 +55,7 @@ class SerialDriver final : public Driver {
   SendStatus set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
                          Instant now) override;
   SendStatus ask_health(std::uint16_t address, Instant now) override;
+  SendStatus ask_clock(std::uint16_t address, Instant now) override;
   Instant step(Instant now, EventSink& events) override;
 
  private:
@@ -78,6 +79,7 @@ class SerialDriver final : public Driver {
   SendStatus serve(const footlight_serial::Frame& frame, Task task, std::size_t answer_bytes, Instant now);
   /// @return true when the answer was the last one
   bool tell_service(const footlight_serial::Frame& frame, EventSink& events);
+  [[nodiscard]] std::vector<HealthValue> clock_values(const footlight_serial::NodeClock& clock) const;
   void give_up(EventSink& events);
   [[nodiscard]] Duration who_slot() const;
   void note_late(const footlight_serial::Frame& frame, Instant now);
@@ -92,8 +94,15 @@ class SerialDriver final : public Driver {
   std::optional<Awaited> given_up_;  ///< the last request whose answer did not come in time
   Duration margin_;                  ///< beyond the latest possible end of an answer
   Instant last_late_{};              ///< when an answer has come after it was given up
-  Instant line_free_{};      ///< the last byte sent has left by then; with `awaited_`, its answer is given up then
-  bool line_taken_ = false;  ///< as of the last call
+  struct ToldTime {
+    Duration show_time{};
+    Instant at;  ///< the frame's last byte
+    double rate = 1;
+  };
+  std::optional<ToldTime> told_;
+  Instant clock_asked_at_{};  ///< last byte of the question
+  Instant line_free_{};       ///< the last byte sent has left by then; with `awaited_`, its answer is given up then
+  bool line_taken_ = false;   ///< as of the last call
   bool down_ = false;
   bool down_told_ = false;
 };

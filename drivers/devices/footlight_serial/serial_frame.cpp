@@ -149,6 +149,10 @@ Frame health_request(std::uint8_t address, std::uint8_t plan_byte) {
   return {Direction::from_controller, Command::health, address, plan_byte, 0, {}};
 }
 
+Frame clock_request(std::uint8_t address, std::uint8_t plan_byte) {
+  return {Direction::from_controller, Command::clock, address, plan_byte, 0, {}};
+}
+
 std::optional<ContentReceipt> decode_content_receipt(const Frame& frame) {
   if (frame.direction != Direction::from_node || frame.command != Command::content) return std::nullopt;
   if (frame.body.size() != kContentReceiptBody) return std::nullopt;
@@ -164,6 +168,14 @@ std::optional<Identity> decode_identity(const Frame& frame) {
   identity.firmware = frame.body[4];
   identity.channels = frame.body[5];
   return identity;
+}
+
+std::optional<NodeClock> decode_clock(const Frame& frame) {
+  if (frame.direction != Direction::from_node || frame.command != Command::clock) return std::nullopt;
+  if (frame.body.size() != kClockBody) return std::nullopt;
+  std::int64_t us = 0;
+  for (std::size_t i = 0; i < 5; ++i) us |= std::int64_t{frame.body[i]} << (8U * i);
+  return NodeClock{microseconds(us), frame.body[5] == 1, frame.body[6]};
 }
 
 std::optional<std::vector<HealthValue>> decode_health(const Frame& frame) {

@@ -47,6 +47,7 @@ inline constexpr std::size_t kStatusBody = 8;
 inline constexpr std::size_t kContentReceiptBody = 3;
 inline constexpr std::size_t kWhoBody = 6;
 inline constexpr std::size_t kHealthBody = 8;
+inline constexpr std::size_t kClockBody = 7;
 inline constexpr int kWhoSlots = 8;  ///< in which devices of one address answer
 
 /// Bytes on the wire of a frame with a body of that length: delimiters, COBS, header, CRC.
@@ -69,6 +70,7 @@ inline constexpr int kWhoSlots = 8;  ///< in which devices of one address answer
 [[nodiscard]] Frame who(std::uint8_t address, std::uint8_t plan_byte, std::uint8_t round);
 [[nodiscard]] Frame new_address(std::uint8_t address, std::uint8_t plan_byte, std::uint32_t unique_id, std::uint8_t to);
 [[nodiscard]] Frame health_request(std::uint8_t address, std::uint8_t plan_byte);
+[[nodiscard]] Frame clock_request(std::uint8_t address, std::uint8_t plan_byte);
 
 /// Body of a status answer.
 struct NodeStatus {
@@ -89,6 +91,13 @@ struct ContentReceipt {
 [[nodiscard]] std::optional<ContentReceipt> decode_content_receipt(const Frame& frame);
 [[nodiscard]] std::optional<Identity> decode_identity(const Frame& frame);
 [[nodiscard]] std::optional<std::vector<HealthValue>> decode_health(const Frame& frame);
+/// What a node's clock says.
+struct NodeClock {
+  Duration show_time{};  ///< at the last byte of the request
+  bool set = false;
+  int times_taken = 0;  ///< TIME frames, modulo 256
+};
+[[nodiscard]] std::optional<NodeClock> decode_clock(const Frame& frame);
 
 /// Finds frames in any bytes: in step again after the next 0x00, whatever was heard before. Never holds more than one
 /// frame's length.

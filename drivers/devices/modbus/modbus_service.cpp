@@ -53,6 +53,8 @@ std::string_view ModbusDriver::refusal(Task task) const {
       return "the device's profile has neither address_register nor readdress_register: its address is set by hand";
     case Task::health:
       return profile_.health.empty() ? "the device's profile has no health registers" : std::string_view{};
+    case Task::clock:
+      return "Modbus devices keep no show time";
   }
   return {};
 }

@@ -20,5 +20,17 @@ TEST(GpioLine, AChipThatIsNotThereIsRefusedWithWhatWouldHelp) {
 #endif
 }
 
+TEST(GpioLine, WhatIsNoChipIsSaid) {
+  const auto chip = read_gpio_chip("/dev/null");
+  ASSERT_FALSE(chip);
+  EXPECT_EQ(chip.error().kind, ErrorKind::device);
+#if FOOTLIGHT_WITH_libgpiod
+  EXPECT_TRUE(chip.error().message.starts_with("GPIO chip \"/dev/null\": not opened: ")) << chip.error().message;
+#else
+  EXPECT_EQ(chip.error().message,
+            "GPIO chip \"/dev/null\": this program was built without libgpiod (install libgpiod-dev and build again)");
+#endif
+}
+
 }  // namespace
 }  // namespace footlight::drivers
