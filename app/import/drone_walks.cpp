@@ -187,7 +187,8 @@ class Walks {
     for (const DroneTrack& track : tracks_) followers.emplace_back(track);
     std::vector<CellIndex> before;
     bool passed_a_turn = false;
-    for (const auto& [time_ms, turn] : candidates(tracks_, turns_, is_sampled())) {
+    const bool sampled = is_sampled();
+    for (const auto& [time_ms, turn] : candidates(tracks_, turns_, sampled)) {
       ImportedFormation now;
       std::vector<CellIndex> cells;
       bool all_on = true;
@@ -204,7 +205,10 @@ class Walks {
       }
       if (!turn && !distinct(cells)) continue;
       const double count = count_of(choice_.tempo, time_ms);
-      if (cells == before && !passed_a_turn) {
+      // Lines that are marks all come back: a hold has two of them.
+      const bool may_hold =
+          sampled || out_.imported.formations.empty() || out_.imported.formations.back().hold_counts == 0;
+      if (cells == before && !passed_a_turn && may_hold) {
         ImportedFormation& held = out_.imported.formations.back();
         held.hold_counts = tidy_count(count - held.count);
         continue;

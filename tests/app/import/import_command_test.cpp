@@ -79,6 +79,22 @@ TEST_F(ImportCommand, AShowLikeAnotherHasItsStagePeopleAndMusic) {
   EXPECT_EQ(marks("back"), marks("show"));
 }
 
+TEST_F(ImportCommand, AFilmThatWasPlannedComesBackByteForByte) {
+  std::filesystem::copy_file(FOOTLIGHT_TEST_DATA "/moving_square_40x30_12_frames_10fps.avi", path("show/square.avi"));
+  folder_.write("show/show.yaml",
+                "footlight: 1\ntitle: square\nstage: {grid: {columns: 20, rows: 15}, reserve: [A1:B15, S1:T15]}\n"
+                "performers: {count: 30}\nsections:\n"
+                "  - {name: sq, from: {video: square.avi}, start: count 5, duration: 60 counts, hold: 4 counts}\n");
+  export_drone("show", "a.zip");
+  const test::Ran ran = test::footlight({"import", path("a.zip"), "-o", path("back"), "--json"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json told = json::parse(ran.out);
+  EXPECT_EQ(told["plan"]["as_in_file"], true);
+  EXPECT_GT(told["formations"], 9);
+  export_drone("back", "b.zip");
+  EXPECT_EQ(folder_.read("b.zip"), folder_.read("a.zip"));
+}
+
 /// People on random cells who may have to wait for each other: what cannot be kept is told, what can is kept.
 TEST_F(ImportCommand, WhetherThePlanIsTheFileIsSaidAndTrue) {
   std::size_t same = 0;
