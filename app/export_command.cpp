@@ -8,11 +8,13 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "app/export_files.hpp"
 #include "app/import/drone_zip.hpp"
 #include "app/output_place.hpp"
 #include "app/plan_step.hpp"
+#include "app/written.hpp"
 #include "config/output_file.hpp"
 
 namespace footlight::app {
@@ -67,7 +69,13 @@ int run(Session& session, const Options& options) {
     if (session.stopped()) return session.fail({ErrorKind::interrupted, "interrupted while exporting"});
     if (auto done = config::write_file(file, content); !done) return session.fail(done.error());
   }
-  for (const auto& [file, content] : *files) session.print(file.string());
+  if (session.json) {
+    std::vector<std::string> names;
+    for (const auto& [file, content] : *files) names.push_back(file.string());
+    session.print(written_json(Stamp(planned->plan()), names).dump(2));
+  } else {
+    for (const auto& [file, content] : *files) session.print(file.string());
+  }
   if (refused) session.note("the plan is refused; stage.json says \"valid\": false");
   return 0;
 }
@@ -81,7 +89,7 @@ void add_export_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--csv", options->csv, "the folder for marks.csv, stage.json and formations.csv");
   command->add_option("--drone", options->drone, "a zip of NAME.csv for each performer, as drone tools read it");
   command->add_flag("--unchecked", options->unchecked, "export a refused plan, too, marked as not valid");
-  session.add_options(*command, false);
+  session.add_options(*command, true);
   command->footer(
       "Examples:\n  footlight export show.yaml --csv out/csv\n"
       "  footlight export show.yaml --plan monday.plan --csv out/monday\n"
