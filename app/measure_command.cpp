@@ -23,7 +23,11 @@ struct Options {
   std::vector<std::string> files;
   PlanChoice choice;  ///< plan and threads; the show is one of the files
   bool best = false;
+  bool bound = false;
 };
+
+/// Of improving a bound; more win less than a hundredth.
+constexpr int kRounds = 16;
 
 /// Plan files begin as every SQLite file does.
 bool is_plan_file(const std::string& file) {
@@ -89,6 +93,14 @@ Result<MeasuredPlan> measure_one(Session& session, const Options& options, const
       if (film) out.bests[i] = planner::best_of_frames(out.plan, SectionIndex::of(i), *film);
     }
   }
+  if (options.bound) {
+    out.bounds.resize(subject->films.size());
+    for (std::size_t i = 0; i < subject->films.size(); ++i) {
+      const auto& film = subject->films[i];
+      if (film)
+        out.bounds[i] = planner::bound_drawing(out.plan, SectionIndex::of(i), *film, kRounds, session.progress());
+    }
+  }
   session.clear_line();
   if (session.stopped()) return Error{ErrorKind::interrupted, "interrupted while measuring"};
   return std::move(out);
@@ -121,6 +133,9 @@ void add_measure_command(CLI::App& program, Session& session, Chosen& chosen) {
                    "plan with so many threads (the plan is the same for any number)")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--best", options->best, "Also the best formation of each single frame, if nobody had to walk");
+  command->add_flag("--bound", options->bound,
+                    "Also how good theta_iou could be at the formations if everybody walked in the best way there is; "
+                    "takes much longer than planning");
   session.add_options(*command, true);
   command->footer(
       "theta_dev   who is outside of the picture (share of the people, 0 is perfect), and its variance over frames\n"

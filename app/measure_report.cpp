@@ -98,6 +98,10 @@ Row best_row(const planner::SingleFigures& best) {
   return {"  best", "-", "-", percent(best.theta_dev), "-", percent(best.theta_miss), percent(best.theta_iou)};
 }
 
+Row at_formations(const char* name, std::size_t instants, double theta_iou) {
+  return {name, fmt::format("{}", instants), fmt::format("{}", instants), "-", "-", "-", percent(theta_iou)};
+}
+
 Row clearance_row(const std::string& name, const Plan& plan, const planner::Measures& m, const Lag& lag) {
   const bool pair = has_pair(plan, m);
   return {name,
@@ -135,6 +139,11 @@ class Tables {
     drawing_.add(drawing_row(name, m));
     if (section && *section < measured.bests.size() && measured.bests[*section]) {
       drawing_.add(best_row(*measured.bests[*section]));
+    }
+    if (section && *section < measured.bounds.size() && measured.bounds[*section]) {
+      const planner::DrawingBound& bound = *measured.bounds[*section];
+      drawing_.add(at_formations("  at formations", bound.instants, bound.of_plan));
+      drawing_.add(at_formations("  at least", bound.instants, bound.least));
     }
     clearance_.add(clearance_row(name, measured.plan, m, lag_of(measured, section)));
     Row way = way_row(name, measured.plan.tracks.size(), m);
@@ -178,6 +187,13 @@ Json plan_json(const MeasuredPlan& measured) {
     if (i < measured.bests.size() && measured.bests[i]) {
       const planner::SingleFigures& best = *measured.bests[i];
       section["best"] = {{"theta_dev", best.theta_dev}, {"theta_miss", best.theta_miss}, {"theta_iou", best.theta_iou}};
+    }
+    if (i < measured.bounds.size() && measured.bounds[i]) {
+      const planner::DrawingBound& bound = *measured.bounds[i];
+      section["bound"] = {{"formations", bound.instants},
+                          {"theta_iou", bound.of_plan},
+                          {"theta_iou_least", bound.least},
+                          {"theta_iou_nobody_walks", bound.nobody_walks}};
     }
     out["sections"].push_back(std::move(section));
   }

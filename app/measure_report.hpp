@@ -7,12 +7,16 @@
 
 #include "core/plan.hpp"
 #include "planner/formation/best_single.hpp"
+#include "planner/joint/drawing_bound.hpp"
 #include "planner/measure.hpp"
 
 namespace footlight::app {
 
 /// The best formation of each single frame, for each section; absent without a film.
 using SectionBests = std::vector<std::optional<planner::SingleFigures>>;
+
+/// What nobody who keeps the limit of speed can beat, for each section; absent without a film.
+using SectionBounds = std::vector<std::optional<planner::DrawingBound>>;
 
 /// A plan and everything that was measured of it.
 struct MeasuredPlan {
@@ -21,6 +25,7 @@ struct MeasuredPlan {
   planner::ShowMeasures measures;
   std::vector<double> lag_s;         ///< tolerated, one for each of the plan's transitions
   SectionBests bests;                ///< empty: not asked for
+  SectionBounds bounds;              ///< empty: not asked for
   std::optional<double> planning_s;  ///< absent when the plan came from a file
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "planner/formation/best_single.hpp"
 #include "planner/formation/cell_shares.hpp"
@@ -30,7 +31,9 @@ constexpr std::array kScales{Scale{4, 2, 3}, Scale{2, 1, 2}, Scale{1, 1, 1}};
 constexpr std::size_t kLeastPeople = 16;
 constexpr int kRoundsAlone = 3;
 constexpr std::array kEpsilonsAtFirst{1000, 200, 50, 20};
-constexpr std::array kEpsilons{200, 50};
+constexpr std::array kEpsilons{200, 50, 20};
+/// The last of them only on cells, and where cells x instants are no more than this: it takes half as long again.
+constexpr std::size_t kMostExactNodes = 400'000;
 
 class JointPlanner {
  public:
@@ -62,8 +65,13 @@ class JointPlanner {
     return factor == 1 || task_.people >= kLeastPeople * factor * factor;
   }
   static int rounds(const Scale& scale, bool first) { return first ? kRoundsAlone : scale.rounds; }
-  static std::size_t refinements(const Scale& scale, bool first) {
-    return (first ? kEpsilonsAtFirst.size() : kEpsilons.size()) + static_cast<std::size_t>(rounds(scale, first)) - 1;
+  [[nodiscard]] std::span<const int> epsilons(const Scale& scale, bool first) const {
+    if (first) return kEpsilonsAtFirst;
+    const std::size_t nodes = static_cast<std::size_t>(grid_.size()) * task_.instants.size();
+    return std::span(kEpsilons).first(scale.factor == 1 && nodes <= kMostExactNodes ? 3 : 2);
+  }
+  [[nodiscard]] std::size_t refinements(const Scale& scale, bool first) const {
+    return epsilons(scale, first).size() + static_cast<std::size_t>(rounds(scale, first)) - 1;
   }
   /// Of one refinement, as it grows with blocks and instants.
   static double work(const Scale& scale) {
@@ -120,7 +128,7 @@ class JointPlanner {
     for (int round = 0; round < rounds(scale, first); ++round) {
       level->weigh();
       if (round == 0 && !first) level->start_like(*coarser_);
-      if (!refine(*level, round, first, work(scale))) return false;
+      if (!refine(*level, round, epsilons(scale, first), work(scale))) return false;
       TimeFlow found = level->result();
       const double loss = level->judge(
           found, [&](std::size_t n, double people, double covered) { set_weight(looks_[n], people, covered); });
@@ -133,8 +141,7 @@ class JointPlanner {
     return true;
   }
 
-  bool refine(Level& level, int round, bool first, double work) {
-    const std::span<const int> all = first ? std::span<const int>(kEpsilonsAtFirst) : std::span<const int>(kEpsilons);
+  bool refine(Level& level, int round, std::span<const int> all, double work) {
     for (const int epsilon : round == 0 ? all : all.last(1)) {
       if (!level.refine(epsilon, {{}, progress_.stop})) return false;
       done_work_ += work;

@@ -43,7 +43,7 @@ struct JointPlan {
   double gap = 0;
 };
 
-/// More cells x instants than this are not planned: 60 bytes and about 2 microseconds each.
+/// More cells x instants than this are not planned.
 inline constexpr std::size_t kMostNodes = 3'000'000;
 /// Whether the film is small enough.
 [[nodiscard]] bool can_plan_jointly(const Grid& grid, std::size_t instants);

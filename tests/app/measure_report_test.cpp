@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -74,6 +75,21 @@ TEST(MeasureReport, IsThreeTablesForPeople) {
             "bow         0 m      0 m          -  0.00         0.0             0.0\n"
             "show     1234 m     12 m      2.5 x  0.25         3.5             6.0\n"
             "The plan is not valid: it breaks its limits.\n");
+}
+
+TEST(MeasureReport, SaysWhatNobodyWhoKeepsTheLimitCanBeat) {
+  MeasuredPlan one = measured();
+  one.bounds = {planner::DrawingBound{4, 0.1875, 0.125, 0.0625}, std::nullopt};
+  EXPECT_THAT(measure_text({one}),
+              testing::HasSubstr("film                      4      25     5.12 %     0.001     10.00 %    20.00 %\n"
+                                 "  at formations           4       4          -         -           -    18.75 %\n"
+                                 "  at least                4       4          -         -           -    12.50 %\n"
+                                 "bow "));
+  const Json json = Json::parse(measure_json({one}));
+  EXPECT_EQ(
+      json["sections"][0]["bound"],
+      Json({{"formations", 4}, {"theta_iou", 0.1875}, {"theta_iou_least", 0.125}, {"theta_iou_nobody_walks", 0.0625}}));
+  EXPECT_FALSE(json["sections"][1].contains("bound"));
 }
 
 TEST(MeasureReport, PutsSeveralPlansSideBySideAndMarksTheInvalidOnes) {
