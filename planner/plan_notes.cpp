@@ -51,6 +51,34 @@ void note_what_gave_way(const NoteTask& task, Plan& plan) {
   }
 }
 
+void note_late_pins(const NoteTask& task, Plan& plan) {
+  const Show& show = *task.show;
+  const Grid& grid = show.stage.grid;
+  std::vector<int> late(show.sections.size(), 0);
+  std::vector<std::string> first(show.sections.size());
+  for (std::size_t k = 0; k < task.chain->stops.size(); ++k) {
+    const Stop& stop = task.chain->stops[k];
+    if (!stop.station) continue;
+    const Station& station = (*task.stations)[*stop.station];
+    const std::size_t s = station.section.at();
+    for (const auto& [who, wanted] : station.pins) {
+      const CellIndex there = stop.cells[(*task.slot)[k][who.at()]];
+      if (show.performers[who.at()].absent || there == wanted || late[s]++ > 0) continue;
+      first[s] = fmt::format(
+          "performer {} is pinned to {} at count {:g} and has come as far as {} by then, since nobody walks faster "
+          "than "
+          "{:g} m/s",
+          show.performers[who.at()].id, grid.name(wanted), station.count, grid.name(there),
+          section_speed(*task.limits, show.sections[s]));
+    }
+  }
+  for (std::size_t s = 0; s < late.size(); ++s) {
+    if (late[s] == 0) continue;
+    if (late[s] > 1) first[s] += fmt::format("; {} more pinned places are not reached in time", late[s] - 1);
+    plan.sections[s].notes.push_back(first[s]);
+  }
+}
+
 void note_steps(const NoteTask& task, Plan& plan) {
   const Show& show = *task.show;
   if (show.stage.walk != WalkKind::cells) return;

@@ -25,6 +25,8 @@ struct NoteTask {
 
 /// How many places of the drawing are not reached in time.
 void note_what_gave_way(const NoteTask& task, Plan& plan);
+/// Who is not where she is pinned by hand, since she cannot be there in time.
+void note_late_pins(const NoteTask& task, Plan& plan);
 /// Over cells, where a step cannot be as short as a count.
 void note_steps(const NoteTask& task, Plan& plan);
 /// Transitions that end in a section and do not tolerate the stage's lag.

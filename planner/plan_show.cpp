@@ -77,6 +77,7 @@ class ShowPlanner {
     write_formations(*chain);
     const NoteTask notes{&show_, &limits_, &stations_, &*chain, &slot_, wide_.clearance_m()};
     note_what_gave_way(notes, planned_.plan);
+    note_late_pins(notes, planned_.plan);
     wide_.note(planned_.plan);
     note_steps(notes, planned_.plan);
     if (slow_for_all_) {

@@ -146,11 +146,27 @@ std::string other_text(const Show& show, const Plan& plan, const Violation& viol
   return section_message(show, SectionIndex::of(section_of(plan, violation.time)), what, hint);
 }
 
+/// Over cells nobody is too close but where no steps were found; how many there would have to be says nothing then.
+std::string in_the_way_text(const Show& show, const Plan& plan, const Verdict& verdict) {
+  const std::string what = fmt::format(
+      "performers {} and {} are in each other's way: no steps over cells were found on which they pass, and at count "
+      "{} "
+      "they would be {:.3f} m apart",
+      plan.performers[verdict.closest_a.at()], plan.performers[verdict.closest_b.at()],
+      count_text(show.tempo.count_at(verdict.closest_at)), verdict.min_clearance_m);
+  return section_message(show, SectionIndex::of(section_of(plan, verdict.closest_at)), what,
+                         "places that they may exchange, other places, a wider way, or walk: straight");
+}
+
 }  // namespace
 
 std::vector<std::string> refusal_texts(const Show& show, const Plan& plan, const Verdict& verdict) {
   std::vector<std::string> texts;
   if (verdict.valid()) return texts;
+  if (plan.stage.walk == WalkKind::cells && verdict.too_close > 0) {
+    texts.push_back(in_the_way_text(show, plan, verdict));
+    return texts;
+  }
   const auto worst = fastest_walks(plan);
   std::vector<std::size_t> order;
   for (std::size_t s = 0; s < worst.size(); ++s) {

@@ -295,5 +295,42 @@ TEST_F(Overrides, AreExactUnderEveryModel) {
   }
 }
 
+TEST(ByHand, WhoIsPinnedFartherAwayThanSheCanWalkIsToldOf) {
+  Show show = test::three_sections();
+  show.sections[1].planner.model = PlannerModel::hierarchical;
+  const auto before = plan_show(show, test::three_films());
+  ASSERT_TRUE(before);
+  const auto& formations = before->plan.formations;
+  const auto second =
+      std::find_if(formations.begin(), formations.end(), [](const Formation& one) { return one.id == "film/2"; });
+  ASSERT_NE(second, formations.end());
+  // At one end of the picture, and three seconds later at the other.
+  const auto first = second - 1;
+  const auto more_left = [&](CellIndex a, CellIndex b) {
+    return show.stage.grid.centre(a).x < show.stage.grid.centre(b).x;
+  };
+  const PerformerIndex who(6);
+  Override early;
+  early.count = first->count;
+  early.pin = {{who, *std::min_element(first->cells.begin(), first->cells.end(), more_left), {}}};
+  Override hand;
+  hand.count = second->count;
+  const CellIndex right = *std::max_element(second->cells.begin(), second->cells.end(), more_left);
+  hand.pin = {{who, right, {}}};
+  show.sections[1].overrides = {early, hand};
+  const auto planned = plan_show(show, test::three_films());
+  ASSERT_TRUE(planned) << planned.error().message;
+  ASSERT_TRUE(planned->plan.valid);
+  const Formation& late = planned->plan.formations[static_cast<std::size_t>(second - formations.begin())];
+  const Grid& grid = show.stage.grid;
+  const CellIndex there = late.cells[who.at()];
+  ASSERT_NE(there, right);
+  const std::string note = "performer " + show.performers[who.at()].id + " is pinned to " + grid.name(right) +
+                           " at count " + std::to_string(static_cast<int>(late.count)) + " and has come as far as " +
+                           grid.name(there) + " by then, since nobody walks faster than 1.4 m/s";
+  EXPECT_EQ(std::count(planned->plan.sections[1].notes.begin(), planned->plan.sections[1].notes.end(), note), 1)
+      << testing::PrintToString(planned->plan.sections[1].notes);
+}
+
 }  // namespace
 }  // namespace footlight::planner

@@ -119,6 +119,34 @@ TEST(OverCells, NamedPeopleWhoStandInEachOthersWayStepAside) {
   }
 }
 
+TEST(OverCells, NamedPeopleWhoCannotPassAreRefusedByNameAndNotByCounts) {
+  Show show = test::show_with(2, GridKind::square, 6, 1);
+  show.stage.walk = WalkKind::cells;
+  show.stage.max_speed_mps = 2;
+  const CellIndex left = show.stage.grid.index({0, 0});
+  const CellIndex right = show.stage.grid.index({5, 0});
+  CellsSource source;
+  source.assigned = true;
+  source.cells = {left, right};
+  show.sections.push_back(test::section_of("one", source, 1, 0, 4, 31));
+  source.cells = {right, left};
+  show.sections.push_back(test::section_of("two", source, 65, 0, 4, 32));
+  const auto planned = plan_show(show, Films(2));
+  ASSERT_TRUE(planned);
+  EXPECT_FALSE(planned->plan.valid);
+  ASSERT_EQ(planned->refusal.size(), 1U);
+  const std::string& text = planned->refusal[0];
+  const std::string head =
+      "show.yaml:32:5: error: sections[1]: performers 1 and 2 are in each other's way: no steps over cells were found "
+      "on "
+      "which they pass, and at count ";
+  const std::string tail =
+      " they would be 0.000 m apart (places that they may exchange, other places, a wider way, or walk: straight)";
+  EXPECT_EQ(text.substr(0, head.size()), head);
+  ASSERT_GT(text.size(), tail.size());
+  EXPECT_EQ(text.substr(text.size() - tail.size()), tail);
+}
+
 TEST(OverCells, WhereACountIsTooShortAStepTakesTwoAndTheNotesSaySo) {
   Show show = over_cells(GridKind::square, 30);
   show.stage.max_speed_mps = 1.4;
