@@ -7,9 +7,8 @@ namespace footlight::contracts {
 namespace {
 
 TEST(GoOnAFloor, LightsEveryNodeWithinAMillisecondOfTheOthersOnAllBuses) {
-  const std::vector<FloorBus> mixed{{BusKind::can, 500'000, 32},
-                                    {BusKind::serial, 115'200, 16},
-                                    {BusKind::modbus_rtu, 115'200, 16}};
+  const std::vector<FloorBus> mixed{
+      {BusKind::can, 500'000, 32}, {BusKind::serial, 115'200, 16}, {BusKind::modbus_rtu, 115'200, 16}};
   const GoRun run = go_on(mixed);
   EXPECT_EQ(run.lit, 64);
   EXPECT_LE(run.within_bus, milliseconds(1)) << "a latch is one frame";

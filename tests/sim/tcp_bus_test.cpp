@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/modbus_frames.hpp"
 #include "small_rig.hpp"
 
 namespace footlight::sim {
@@ -63,6 +64,25 @@ TEST(TcpBus, ExchangesTakeTheTurnaroundAndSomeHundredMicroseconds) {
   EXPECT_LT(shortest, microseconds(500 + 2 * 250 + 100));
   EXPECT_LE(longest, net.port.wire_time(request));
   EXPECT_GT(longest, milliseconds(4));
+}
+
+TEST(TcpBus, AGatewayKnowsANodeByTheAddressThatItHasTaken) {
+  constexpr int kUniqueId = 0x60;
+  constexpr std::uint16_t kReaddress = 0x6C;
+  Net net(tcp_rig(3));
+  ModbusLine& line = net.simulated.modbus_line(BusIndex(0));
+  const auto id = net.exchange(read(2, kUniqueId, 2))->values;
+  ASSERT_EQ(id.size(), 2U);
+  const auto ask = [&](const ModbusRequest& request) {
+    line.say(1, tcp_frame(7, request.unit, request_pdu(request)));
+    net.simulated.advance_to(net.clock.now() + milliseconds(50));
+    int client = 0;
+    std::vector<std::uint8_t> frame;
+    return line.hear(client, frame);
+  };
+  EXPECT_TRUE(ask({2, 16, kReaddress, 4, {id[0], id[1], 9, 0x5A00 | (0x5A ^ 9)}}));
+  EXPECT_FALSE(ask(read(2, 0x40, 1)));
+  EXPECT_TRUE(ask(read(9, 0x40, 1)));
 }
 
 TEST(TcpBus, ABroadcastGoesToEachNodeInTurn) {
