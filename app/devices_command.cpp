@@ -9,10 +9,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/commission/wipe_record.hpp"
 #include "app/device_bus.hpp"
 #include "app/devices_report.hpp"
 #include "app/machine_wires.hpp"
 #include "app/simulated_buses.hpp"
+#include "app/state_folder.hpp"
 #include "config/nearest.hpp"
 #include "config/quantity.hpp"
 #include "core/clock.hpp"
@@ -90,6 +92,8 @@ int list(Session& session, const Options& options) {
   if (!drivers) return session.fail(drivers.error());
   std::vector<std::string> assumptions;
   for (const auto& driver : *drivers) assumptions.push_back(driver->assumption());
+  const std::string show_file = options.show.empty() ? kShowHere : options.show;
+  if (const auto changed = wipe_note(state_folder(""), show_file, rig)) session.note(*changed);
   const MachineWires machine = look_at_machine();
   session.print(session.json ? list_json(rig, assumptions, machine) : list_text(rig, assumptions, machine));
   return 0;

@@ -7,10 +7,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commission/wipe_record.hpp"
 #include "app/dry_run.hpp"
 #include "app/dry_run_report.hpp"
 #include "app/growing_file.hpp"
 #include "app/plan_step.hpp"
+#include "app/state_folder.hpp"
 
 namespace footlight::app {
 namespace {
@@ -63,6 +65,9 @@ int run(Session& session, const Options& options) {
   };
   if (auto opened = open(trace, "trace", options.trace); !opened) return session.fail(opened.error());
   if (auto opened = open(wire_log, "wire log", options.wire_log); !opened) return session.fail(opened.error());
+  if (const auto changed = wipe_note(state_folder(""), options.choice.show, planned->loaded.rig)) {
+    session.note(*changed);
+  }
   const auto report = play(session, options, *planned, faults, trace ? &trace->stream() : nullptr,
                            wire_log ? &wire_log->stream() : nullptr);
   if (!report) return session.fail(report.error());

@@ -18,6 +18,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "app/commission/wipe_record.hpp"
 #include "app/growing_file.hpp"
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
@@ -180,6 +181,7 @@ int run(Session& session, const Options& options) {
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
+  if (const auto changed = wipe_note(state_folder(options.state), options.choice.show, rig)) session.note(*changed);
   Traces traces(session, options, *planned, rig);
   std::optional<GrowingFile> file;
   if (!options.wire_log.empty()) {

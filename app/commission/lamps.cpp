@@ -88,8 +88,7 @@ std::string places_digest(const Rig& rig) {
     sum.integer(node.address);
     sum.integer(static_cast<std::int64_t>(node.channels.size()));
     for (const Channel& channel : node.channels) {
-      sum.integer(static_cast<std::int64_t>(channel.kind));
-      sum.integer(channel.kind == Channel::Kind::cell ? static_cast<std::int64_t>(channel.cell.value()) : 0);
+      sum.integer(channel.kind == Channel::Kind::cell ? static_cast<std::int64_t>(channel.cell.value()) : -1);
     }
   }
   return sum.hex();

@@ -44,7 +44,8 @@ enum class WalkOrder {
 /// Which channels there are, whatever cells they have: the same for two rigs of which a film of one can be read for the
 /// other.
 [[nodiscard]] std::uint8_t wiring_tag(const Rig& rig);
-/// Hex SHA-256 over which lamp is on which cell, by bus, address and channel; URLs and names of nodes do not count.
+/// Hex SHA-256 over which lamp is on which cell, by bus, address and channel; URLs, names of
+/// nodes and wearables do not count.
 [[nodiscard]] std::string places_digest(const Rig& rig);
 
 /// CRC-8 with the polynomial 0x2F (x^8 + x^5 + x^3 + x^2 + x + 1), most significant bit first, start 0, no reflection,

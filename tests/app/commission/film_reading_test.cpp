@@ -83,6 +83,8 @@ TEST(FilmReading, FindsEveryLampFromAHandThatShakes) {
 
 TEST(FilmReading, FindsEveryLampInNoiseWithReflectionsAndOtherLights) {
   PhoneChoice choice;
+  choice.width = 640;
+  choice.height = 360;
   choice.noise = 10;
   choice.reflection = 0.4;
   choice.steady_lights = 8;
