@@ -13,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/commission/wipe_record.hpp"
+#include "app/planar_frame.hpp"
 #include "app/video_writer.hpp"
 #include "config/rig_file.hpp"
 #include "tests/app/commission/filmed_floor.hpp"
@@ -209,12 +210,14 @@ void write_film(const tests::FilmedFloor& floor, const Grid& grid, const tests::
   auto writer = app::VideoWriter::open(file, shape);
   ASSERT_TRUE(writer) << writer.error().message;
   tests::Phone phone(choice, grid, floor.really());
+  std::vector<unsigned char> planar;
   phone.film(
       floor.length_s(), [&](std::size_t lamp, double at_s) { return floor.lit(lamp, at_s); },
       [&](double, const cv::Mat& grey) {
         cv::Mat pixels;
         cv::cvtColor(grey, pixels, cv::COLOR_GRAY2BGRA);
-        ASSERT_TRUE(writer->write({pixels.data, pixels.total() * 4}));
+        app::to_planar({pixels.data, pixels.total() * 4}, choice.width, choice.height, planar);
+        ASSERT_TRUE(writer->write(planar));
       });
   ASSERT_TRUE(writer->finish());
 }
@@ -246,7 +249,7 @@ TEST_F(Commission, AFilmTellsWhatIsExchangedTurnedAndDeadAndGivesTheRig) {
   write_film(floor, grid_, choice, folder_ / "phone.mp4");
 
   const Ran ran = run({"gray", "show.yaml", "--film", "phone.mp4", "-o", "new.yaml"});
-  EXPECT_EQ(ran.status, 0) << ran.err;
+  ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("lamps      83: 81 seen, 70 of them where the rig says\n"
                                  "turned     left-3: its lamps 0 to 7 hang the other way round\n"
                                  "exchanged  left-1/3 is on "));
