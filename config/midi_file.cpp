@@ -191,7 +191,7 @@ std::optional<Error> add(const MetaEvent& event, const std::string& file, Ticks&
     out.meters.push_back({quarter, static_cast<int>(at(0)), 1 << at(1)});
   } else if (event.type == kSmpteOffset) {
     const bool none = std::all_of(event.data.begin(), event.data.end(), [](char c) { return (c & 0x1F) == 0; });
-    if (!none) out.ignored.push_back("a SMPTE offset: count 1 is where the file begins");
+    if (!none) out.ignored.emplace_back("a SMPTE offset: count 1 is where the file begins");
   } else {
     std::string text = text_of(event.data);
     if (!text.empty()) out.rehearsals.push_back({quarter, std::move(text)});

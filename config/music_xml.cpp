@@ -312,7 +312,8 @@ class ScoreReader {
     ScoreEvents out;
     out.ignored = std::move(ignored_);
     if (order->size() != measures_.size()) {
-      out.ignored.push_back("repeats are played out: measures are numbered as they are heard, not as they are printed");
+      out.ignored.emplace_back(
+          "repeats are played out: measures are numbered as they are heard, not as they are printed");
     }
     write(*order, out);
     return out;

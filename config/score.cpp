@@ -84,7 +84,7 @@ std::vector<ScoreEvents::Meter> meters_from_zero(const ScoreEvents& events) {
 std::vector<ScoreEvents::Tempo> tempos_from_zero(const ScoreEvents& events, std::vector<std::string>& ignored) {
   std::vector<ScoreEvents::Tempo> out;
   if (events.tempos.empty() || events.tempos.front().quarter > 0) {
-    ignored.push_back("no tempo stands at the beginning: 120 quarter notes a minute are taken");
+    ignored.emplace_back("no tempo stands at the beginning: 120 quarter notes a minute are taken");
     out.push_back({0, 120});
   }
   for (const ScoreEvents::Tempo& tempo : events.tempos) {
@@ -100,6 +100,7 @@ std::vector<ScoreEvents::Tempo> tempos_from_zero(const ScoreEvents& events, std:
 Result<std::vector<TempoChange>> changes_of(const std::vector<ScoreEvents::Tempo>& tempos, const Counting& counting,
                                             const std::string& file) {
   std::vector<double> places;  // where the tempo changes, or how much of the music a count is
+  places.reserve(tempos.size() + counting.starts().size());
   for (const auto& tempo : tempos) places.push_back(tempo.quarter);
   for (const auto& start : counting.starts()) places.push_back(start.quarter);
   std::sort(places.begin(), places.end());

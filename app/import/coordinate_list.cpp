@@ -160,11 +160,11 @@ class ListReader {
     const bool words = has(Column::side) && has(Column::depth);
     const bool numbers = has(Column::x) && has(Column::y);
     if (words == numbers) {
-      return wrong("the place of a performer is \"side to side\" and \"front-back\", or x and y",
+      return wrong(R"(the place of a performer is "side to side" and "front-back", or x and y)",
                    "Set,Counts,Side 1-Side 2,Front-Back or set,counts,x_m,y_m");
     }
     if (has(Column::counts) && has(Column::count)) {
-      return wrong("\"counts\" and \"count\" do not go together",
+      return wrong(R"("counts" and "count" do not go together)",
                    "counts of the walk into the set, or the count of the show");
     }
     if (has(Column::set) && !has(Column::counts) && !has(Column::count)) {
@@ -239,7 +239,7 @@ class ListReader {
     return std::nullopt;
   }
 
-  Position position(const Row& row) const { return out_.position(row.place); }
+  [[nodiscard]] Position position(const Row& row) const { return out_.position(row.place); }
 
   void make_formations() {
     const std::vector<Row>& first = rows_.begin()->second;

@@ -161,7 +161,7 @@ DrillSteps side_to_side(std::string_view text) {
   } else if (words.take({"inside", "in"})) {
     outside = -1;
   } else if (*steps > 0) {
-    return words.wrong("\"inside\" or \"outside\"", kSideHint);
+    return words.wrong(R"("inside" or "outside")", kSideHint);
   }
   words.take({"of"});
   words.take({"the"});
@@ -204,7 +204,7 @@ DrillSteps front_to_back(std::string_view text, const DrillField& field) {
              words.take_both("frnt", {"of"})) {
     behind = -1;
   } else if (*steps > 0) {
-    return words.wrong("\"behind\" or \"in front of\"", kDepthHint);
+    return words.wrong(R"("behind" or "in front of")", kDepthHint);
   }
   words.take({"of"});
   DrillSteps out;

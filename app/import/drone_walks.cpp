@@ -100,7 +100,8 @@ std::optional<Error> unequal(const std::vector<DroneTrack>& tracks) {
 /// The count with the fewest decimals that is this millisecond.
 double count_of(const TempoMap& tempo, std::int64_t time_ms) {
   const double exact_count = tempo.count_at(Instant(milliseconds(time_ms)));
-  for (double scale = 1; scale < 1e9; scale *= 10) {
+  double scale = 1;
+  for (int decimals = 0; decimals < 9; ++decimals, scale *= 10) {
     const double count = std::round(exact_count * scale) / scale;
     if (std::llround(1000 * to_seconds(tempo.at(count))) == time_ms) return count;
   }
@@ -164,7 +165,7 @@ class Walks {
       if (seen.size() > 1) ++several;
       out_.imported.people.push_back({track.name, lit == nullptr ? std::nullopt : std::optional(lit->colour)});
     }
-    if (high) out_.imported.ignored.push_back("heights (z_m): everybody stands on the floor");
+    if (high) out_.imported.ignored.emplace_back("heights (z_m): everybody stands on the floor");
     if (several > 0) {
       out_.imported.ignored.push_back(
           fmt::format("changes of colour, of {} people: each has the first that is not black", several));
@@ -183,8 +184,7 @@ class Walks {
   }
 
   std::optional<Error> formations() {
-    std::vector<Follower> followers;
-    for (const DroneTrack& track : tracks_) followers.emplace_back(track);
+    std::vector<Follower> followers(tracks_.begin(), tracks_.end());
     std::vector<CellIndex> before;
     bool passed_a_turn = false;
     const bool sampled = is_sampled();

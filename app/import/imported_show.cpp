@@ -100,6 +100,7 @@ Result<std::vector<std::size_t>> order_like(const Imported& imported, const Show
     if (found == by_name.end()) found = by_name.find(performer.name);
     if (found == by_name.end()) {
       std::vector<std::string> names;
+      names.reserve(by_name.size());
       for (const auto& [name, person] : by_name) names.push_back(name);
       return input_error(fmt::format("the file does not say where performer {} of {} stands ({})", performer.id,
                                      show.file, config::suggestion(performer.id, names, "people of the file")));
