@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner/parallel.hpp"
 
-#include <algorithm>
+#include <atomic>
+#include <thread>
 
 #include <tbb/parallel_for.h>
 
@@ -9,15 +10,21 @@ namespace footlight::planner {
 
 bool for_each_index(std::size_t count, std::string_view stage, const Progress& progress,
                     const std::function<void(std::size_t)>& work) {
-  // In portions, since progress is told from the calling thread only.
-  const std::size_t portion = std::max<std::size_t>(8, count / 20);
-  for (std::size_t first = 0; first < count; first += portion) {
-    if (progress.stopped()) return false;
-    progress.tell(stage, static_cast<double>(first) / static_cast<double>(count));
-    tbb::parallel_for(first, std::min(count, first + portion), [&](std::size_t i) {
-      if (!progress.stopped()) work(i);
-    });
-  }
+  if (progress.stopped()) return false;
+  progress.tell(stage, 0.0);
+  const auto caller = std::this_thread::get_id();
+  const std::size_t portion = count / 50 + 1;
+  std::atomic<std::size_t> done = 0;
+  std::size_t told = 0;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    if (progress.stopped()) return;
+    work(i);
+    const std::size_t now = done.fetch_add(1, std::memory_order_relaxed) + 1;
+    // The caller works, too, and tells what all have done.
+    if (std::this_thread::get_id() != caller || now < told + portion || now == count) return;
+    told = now;
+    progress.tell(stage, static_cast<double>(now) / static_cast<double>(count));
+  });
   if (progress.stopped()) return false;
   progress.tell(stage, 1.0);
   return true;

@@ -190,8 +190,10 @@ struct StageCount {
 
 /// The value of a stage: from `stages` (nothing: always anew), else made and kept there.
 /// @param decode (StageReader&) -> Value  @param encode (const Value&) -> std::string  @param make () -> Value
+/// @param stop what was made when it had become true is not kept; may be missing
 template <class Decode, class Encode, class Make>
-auto recall(Stages* stages, const StageKey& key, StageCount* count, Decode decode, Encode encode, Make make) {
+auto recall(Stages* stages, const StageKey& key, StageCount* count, Decode decode, Encode encode, Make make,
+            const std::atomic<bool>* stop = nullptr) {
   if (count != nullptr) count->add();
   if (stages != nullptr) {
     if (const auto bytes = stages->find(key)) {
@@ -202,7 +204,7 @@ auto recall(Stages* stages, const StageKey& key, StageCount* count, Decode decod
   }
   if (count != nullptr) count->add_anew();
   auto value = make();
-  if (stages != nullptr) stages->keep(key, encode(value));
+  if (stages != nullptr && (stop == nullptr || !stop->load())) stages->keep(key, encode(value));
   return value;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -51,6 +52,17 @@ struct Matching {
   std::vector<std::uint32_t> source_of;  ///< kNobody: free
   std::vector<Value> price;              ///< of a target
   std::vector<Value> value;              ///< of a source: its least cost + price, where it has been found
+  std::uint64_t looked_at = 0;           ///< arcs that the exact method has looked at
+};
+
+/// When an exact method gives up.
+struct Patience {
+  std::uint64_t most_arcs = std::numeric_limits<std::uint64_t>::max();  ///< to look at
+  const std::atomic<bool>* stop = nullptr;                              ///< becomes true when nobody wants the answer
+
+  [[nodiscard]] bool over(std::uint64_t looked_at) const {
+    return looked_at > most_arcs || (stop != nullptr && stop->load(std::memory_order_relaxed));
+  }
 };
 
 }  // namespace footlight::planner::assignment

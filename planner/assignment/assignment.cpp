@@ -34,13 +34,14 @@ double walk_cost(Point a, Point b, WalkCost cost) {
 }
 
 std::optional<Assignment> assign_all(std::span<const Point> sources, std::span<const Point> targets, WalkCost cost,
-                                     double longest_m) {
+                                     double longest_m, const std::atomic<bool>* stop) {
   Assignment result;
   if (sources.empty()) return result;
   const Walks walks(sources, targets, cost, longest_m);
-  const auto matching = match_walks(walks);
+  const auto matching = match_walks(walks, stop);
   if (!matching) return std::nullopt;
   const std::uint32_t size = walks.size();
+  result.looked_at = matching->looked_at;
   result.target_of.resize(size);
   result.source_value.resize(size);
   result.target_value.resize(size);
@@ -146,7 +147,9 @@ class Potential {
 };
 
 /// By the triangle inequality an exchange that lets everybody stay who stands on a target never costs distance.
-Assignment assign_where_common_points_stay(std::span<const Point> sources, std::span<const Point> targets) {
+std::optional<Assignment> assign_where_common_points_stay(std::span<const Point> sources,
+                                                          std::span<const Point> targets,
+                                                          const std::atomic<bool>* stop) {
   const Common common = find_common(sources, targets);
   std::vector<Point> from;
   std::vector<Point> to;
@@ -154,9 +157,10 @@ Assignment assign_where_common_points_stay(std::span<const Point> sources, std::
   to.reserve(common.targets.size());
   for (const std::uint32_t i : common.sources) from.push_back(sources[i]);
   for (const std::uint32_t j : common.targets) to.push_back(targets[j]);
-  const auto rest = assign_all(from, to, WalkCost::euclidean, std::numeric_limits<double>::infinity());
-  FL_CHECK(rest.has_value());
+  const auto rest = assign_all(from, to, WalkCost::euclidean, std::numeric_limits<double>::infinity(), stop);
+  if (!rest) return std::nullopt;
   Assignment result;
+  result.looked_at = rest->looked_at;
   result.cost = rest->cost;
   result.gap = rest->gap;
   result.target_of.resize(sources.size());
@@ -215,15 +219,15 @@ double longest_walk(std::span<const Point> sources, std::span<const Point> targe
 }  // namespace
 
 std::optional<Assignment> assign(std::span<const Point> sources, std::span<const Point> targets, WalkCost cost,
-                                 double longest_m) {
+                                 double longest_m, const std::atomic<bool>* stop) {
   FL_CHECK(sources.size() == targets.size());
   FL_CHECK(longest_m >= 0);
   if (cost == WalkCost::euclidean) {
     // Without a longest walk whoever stands on a target may stay there, and if nobody walks too far then, that was it.
-    Assignment free = assign_where_common_points_stay(sources, targets);
-    if (longest_walk(sources, targets, free.target_of) <= longest_m) return free;
+    auto free = assign_where_common_points_stay(sources, targets, stop);
+    if (!free || longest_walk(sources, targets, free->target_of) <= longest_m) return free;
   }
-  return assign_all(sources, targets, cost, longest_m);
+  return assign_all(sources, targets, cost, longest_m, stop);
 }
 
 std::optional<Assignment> assign_sparse(std::uint32_t size, std::span<const Arc> arcs) {
@@ -249,8 +253,9 @@ std::optional<Assignment> assign_sparse(std::uint32_t size, std::span<const Arc>
   hold_auctions(rows, static_cast<Value>(widest * scale), matching);
   Phases phases(rows, matching, false);
   phases.tighten();
-  if (!phases.run()) return std::nullopt;
+  if (phases.run({}) != Phases::Outcome::perfect) return std::nullopt;
   Assignment result;
+  result.looked_at = phases.looked_at();
   result.target_of = matching.target_of;
   Value primal = 0;
   Value dual = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -25,16 +26,20 @@ struct Assignment {
   /// the matched ones, so that the sum of both is a lower bound of any assignment's cost, and is cost - gap.
   std::vector<double> source_value;
   std::vector<double> target_value;
+  std::uint64_t looked_at = 0;  ///< pairs that the exact finish has looked at: how good its start was
 };
 
 /// The cheapest one-to-one assignment of N sources to N targets, exact.
 ///
 /// @param sources, targets  N distinct points each, metres, |coordinate| < 1e5
 /// @param longest_m  walks longer than this are forbidden (infinity: none are)
-/// @return nothing when no assignment without forbidden walks exists
+/// @param stop becomes true when the answer is no longer wanted; may be missing
+/// @return nothing when no assignment without forbidden walks exists; or none was found in bounded work, which happens
+/// to tens of thousands whose longest walk can hardly be shorter; or when stopped
 /// Complexity and method: docs/algorithms/assignment.md. Deterministic. Thread: reentrant.
 [[nodiscard]] std::optional<Assignment> assign(std::span<const Point> sources, std::span<const Point> targets,
-                                               WalkCost cost, double longest_m);
+                                               WalkCost cost, double longest_m,
+                                               const std::atomic<bool>* stop = nullptr);
 
 /// The same over an explicit list of allowed pairs with any cost: blocked ways, penalties, pins.
 struct Arc {

@@ -17,6 +17,9 @@ namespace {
 constexpr std::uint32_t kDenseSize = 64;
 constexpr std::uint32_t kMostCandidates = 48;
 constexpr std::uint64_t kMostBids = 60;  ///< a source, in one phase of an auction
+/// Under a longest walk, arcs for each source that the exact finish looks at before it gives up: five times of what a
+/// hundred thousand people need whose longest walk becomes shorter by a third.
+constexpr std::uint64_t kMostLookedAt = 20'000;
 constexpr Value kMostMargins = Value{1} << 14U;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -202,46 +205,58 @@ std::vector<ArcRows::NewArc> arcs_that_undercut(const Walks& walks, PricedTarget
 
 /// From prices and a matching that are nearly right to those that are. Sources that reach fewer targets than they are
 /// get arcs out of what they reach; when no allowed walk leads out of it there is no matching (Hall 1935).
-std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows) {
+std::optional<Matching> finish(const Walks& walks, PricedTargets& targets, Matching matching, ArcRows rows,
+                               const std::atomic<bool>* stop) {
+  Patience patience;
+  patience.stop = stop;
+  if (walks.limited()) patience.most_arcs = kMostLookedAt * walks.size();
   Phases phases(rows, matching, walks.on_lattice());
   phases.tighten();
   // Each time it is looked twice as far, or a walk that is missing far away would take thousands of rounds.
   Value margin = 4 * walks.spacing();
   while (true) {
-    while (!phases.run()) {
+    Phases::Outcome outcome = phases.run(patience);
+    for (; outcome == Phases::Outcome::stuck; outcome = phases.run(patience)) {
       const auto arcs = arcs_out(walks, targets, matching, phases, margin);
       if (arcs.empty()) return std::nullopt;
       phases.add(arcs);
       margin = std::min(2 * margin, kMostMargins * walks.spacing());
     }
+    if (outcome == Phases::Outcome::given_up) return std::nullopt;
     const auto arcs = arcs_that_undercut(walks, targets, matching);
+    matching.looked_at = phases.looked_at();
     if (arcs.empty()) return matching;
     phases.add(arcs);
   }
 }
 
+/// The cheapest matching of fours under the same longest walk, where it binds: near it prices rise so steeply, and from
+/// so far away, that those of unlimited walks are no start. Where fours have none, those will have to do.
+Matching sample_match_limited(const Walks& walks, const std::atomic<bool>* stop) {
+  if (auto sample = match_walks(walks.fours(), stop)) return *std::move(sample);
+  return sample_match(walks.unlimited().fours());
+}
+
 }  // namespace
 
-std::optional<Matching> match_walks(const Walks& walks) {
+std::optional<Matching> match_walks(const Walks& walks, const std::atomic<bool>* stop) {
   if (walks.size() <= kDenseSize) {
     Matching matching = match_all_pairs(walks);
     if (std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) return std::nullopt;
     return matching;
   }
-  const Walks coarse = walks.fours();
+  const Walks coarse = walks.unlimited().fours();
   PricedTargets targets(walks);
   targets.fit(extend(walks, coarse, sample_match(coarse)));
   Matching matching = auction(walks, targets, tuning(walks.metric()).steps);
   if (walks.limited() && std::ranges::find(matching.target_of, kNobody) != matching.target_of.end()) {
-    // Where some have nothing left to bid for, prices rise out of all proportion: better those of unlimited walks.
-    const Walks unlimited = walks.unlimited();
-    targets.fit(extend(unlimited, coarse, sample_match(coarse)));
-    matching = auction(unlimited, targets, tuning(walks.metric()).steps);
+    targets.fit(extend(walks, walks.fours(), sample_match_limited(walks, stop)));
+    matching = auction(walks, targets, tuning(walks.metric()).steps);
   }
   targets.fit(matching.price);
   const auto margin = static_cast<Value>(tuning(walks.metric()).arc_margin * static_cast<double>(walks.spacing()));
   ArcRows rows = candidates(walks, targets, matching, margin);
-  return finish(walks, targets, std::move(matching), std::move(rows));
+  return finish(walks, targets, std::move(matching), std::move(rows), stop);
 }
 
 }  // namespace footlight::planner::assignment

@@ -10,7 +10,7 @@ namespace footlight::planner::assignment {
 
 /// The cheapest perfect matching of the walks and a dual solution that proves it: cost + price - value >= 0 for every
 /// allowed walk (all of them priced, not only those that were candidates) and = 0 for the matched ones, in integers.
-/// @return nothing when no perfect matching of allowed walks exists
-[[nodiscard]] std::optional<Matching> match_walks(const Walks& walks);
+/// @return nothing when no perfect matching of allowed walks exists, or none was found in bounded work, or when stopped
+[[nodiscard]] std::optional<Matching> match_walks(const Walks& walks, const std::atomic<bool>* stop);
 
 }  // namespace footlight::planner::assignment

@@ -62,13 +62,14 @@ void Phases::tighten() {
   }
 }
 
-bool Phases::run() {
+Phases::Outcome Phases::run(const Patience& patience) {
   while (true) {
     collect_free();
-    if (free_.empty()) return true;
+    if (free_.empty()) return Outcome::perfect;
+    if (patience.over(looked_at_)) return Outcome::given_up;
     forget();
     const Search result = search(std::max<std::size_t>(1, free_.size() * 3 / 4));
-    if (!result.found) return false;
+    if (!result.found) return Outcome::stuck;
     change_prices(result.farthest);
     const std::size_t augmented = augment();
     FL_CHECK(augmented > 0);
@@ -109,7 +110,7 @@ void Phases::forget() {
 Phases::Search Phases::search(std::size_t wanted) {
   if (!by_heap_) {
     const Search result = explore(wanted);
-    if (result.found || !too_far_) return result;
+    if (result.found || dropped_ == kFar) return result;
     by_heap_ = true;  // the nearest free target lies beyond the window: from now on without one
     forget();
   }
@@ -117,7 +118,7 @@ Phases::Search Phases::search(std::size_t wanted) {
 }
 
 Phases::Search Phases::explore(std::size_t wanted) {
-  too_far_ = false;
+  dropped_ = kFar;
   now_ = 0;
   for (const std::uint32_t i : free_) {
     source_distance_[i] = 0;
@@ -149,7 +150,7 @@ void Phases::push(std::uint32_t node, Value distance) {
     buckets_[static_cast<std::size_t>(distance) % kBuckets].push_back(node);
     ++queued_;
   } else {
-    too_far_ = true;
+    dropped_ = std::min(dropped_, distance);
   }
 }
 
@@ -165,6 +166,7 @@ std::uint32_t Phases::pop() {
   }
   if (queued_ == 0) return kNobody;
   while (buckets_[static_cast<std::size_t>(now_) % kBuckets].empty()) ++now_;
+  if (now_ >= dropped_) return kNobody;
   auto& bucket = buckets_[static_cast<std::size_t>(now_) % kBuckets];
   const std::uint32_t node = bucket.back();
   bucket.pop_back();
@@ -174,6 +176,7 @@ std::uint32_t Phases::pop() {
 
 void Phases::relax(std::uint32_t source, Value base) {
   base -= matching_.value[source];
+  looked_at_ += rows_.first[source + 1] - rows_.first[source];
   for (std::uint32_t e = rows_.first[source]; e < rows_.first[source + 1]; ++e) {
     const std::uint32_t target = rows_.target[e];
     const Value distance = base + rows_.cost[e] + matching_.price[target];

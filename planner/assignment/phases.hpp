@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -20,14 +21,22 @@ class Phases {
   /// when they turn out not to be small, it is a heap
   Phases(ArcRows& rows, Matching& matching, bool small_costs);
 
+  enum class Outcome : std::uint8_t {
+    perfect,
+    stuck,     ///< the sources in reached_sources() have arcs to fewer targets than they are
+    given_up,  ///< out of patience
+  };
+
   /// From any prices and matching to a state that satisfies the invariant: least prices, and of the matching what is
   /// tight. O(arcs)
   void tighten();
 
-  /// @return true: perfect; false: the sources in reached_sources() have arcs to fewer targets than they are
-  [[nodiscard]] bool run();
+  [[nodiscard]] Outcome run(const Patience& patience);
 
-  /// After run() returned false.
+  /// Arcs that all searches have looked at.
+  [[nodiscard]] std::uint64_t looked_at() const { return looked_at_; }
+
+  /// After run() returned `stuck`.
   [[nodiscard]] std::span<const std::uint32_t> reached_sources() const { return reached_sources_; }
   [[nodiscard]] std::span<const std::uint32_t> reached_targets() const { return reached_targets_; }
 
@@ -62,7 +71,8 @@ class Phases {
   std::vector<std::pair<Value, std::uint32_t>> heap_;
   Value now_ = 0;  ///< distance that the search has come to
   std::size_t queued_ = 0;
-  bool too_far_ = false;  ///< something fell out of the queue's window
+  Value dropped_ = kFar;  ///< least of the distances that fell out of the queue's window
+  std::uint64_t looked_at_ = 0;
   std::vector<Value> source_distance_, target_distance_, source_done_;
   std::vector<std::uint32_t> reached_sources_, reached_targets_, free_;
   std::vector<std::uint32_t> next_arc_, path_;

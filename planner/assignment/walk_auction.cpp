@@ -46,7 +46,8 @@ bool WalkAuction::hold(float step, std::uint64_t most_bids) {
           break;
         }
       }
-      const float second = std::min(offer.second, horizon_[source]);
+      // Whoever can go nowhere else would pay any price.
+      const float second = std::min({offer.second, horizon_[source], ceiling});
       tree_.raise(offer.target, tree_.price(offer.target) + (std::max(second - offer.best, 0.0F) + step));
       const std::uint32_t displaced = source_of_[offer.target];
       source_of_[offer.target] = source;

@@ -185,6 +185,11 @@ Value Walks::to_value(double squared) const {
 bool Walks::limited() const { return longest_m_ < kInfinity; }
 
 bool Walks::allowed(std::uint32_t source, std::uint32_t target) const {
+  if (source_points_.empty()) {
+    const float dx = sources_.search_x[source] - targets_.search_x[target];
+    const float dy = sources_.search_y[source] - targets_.search_y[target];
+    return dx * dx + dy * dy <= reach_ * reach_;
+  }
   return distance(source_points_[sources_.original[source]], target_points_[targets_.original[target]]) <= longest_m_;
 }
 
@@ -215,8 +220,9 @@ Walks Walks::unlimited() const {
 Walks Walks::fours() const {
   Walks coarse;
   coarse.metric_ = metric_;
-  coarse.longest_m_ = kInfinity;
-  coarse.reach_ = std::numeric_limits<float>::infinity();
+  coarse.longest_m_ = longest_m_;
+  const double spacing = static_cast<double>(spacing_) / scale_;
+  coarse.reach_ = reach_ + static_cast<float>(0.5 * (metric_ == WalkCost::squared ? std::sqrt(spacing) : spacing));
   coarse.weight_x_ = weight_x_;
   coarse.weight_y_ = weight_y_;
   coarse.scale_ = scale_;

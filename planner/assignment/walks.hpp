@@ -35,8 +35,8 @@ class Walks {
  public:
   Walks(std::span<const Point> sources, std::span<const Point> targets, WalkCost metric, double longest_m);
 
-  /// The means of each four points of one side that follow each other in kd order, without a longest walk: the same
-  /// formations, drawn with half as many points each way.
+  /// The means of each four points of one side that follow each other in kd order: the same formations, drawn with
+  /// half as many points each way. A longest walk becomes longer by half of what two neighbours are apart here.
   [[nodiscard]] Walks fours() const;
   /// The same without a longest walk.
   [[nodiscard]] Walks unlimited() const;
@@ -49,7 +49,7 @@ class Walks {
     const double dy = sources_.y[source] - targets_.y[target];
     return to_value(weight_x_ * dx * dx + weight_y_ * dy * dy);
   }
-  /// Not longer than longest_m, judged by the given points.
+  /// Not longer than longest_m, judged by the given points; of fours by their means.
   [[nodiscard]] bool allowed(std::uint32_t source, std::uint32_t target) const;
   [[nodiscard]] bool limited() const;
 

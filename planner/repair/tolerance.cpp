@@ -111,7 +111,10 @@ class Loosener {
     may_wait_ = static_cast<double>(punctual) <= kMostWaiting * static_cast<double>(walks_.size()) + 8;
     for (int pass = 0; pass < kPasses && !open.empty(); ++pass) {
       changed_.clear();
-      for (const Pair& pair : open) solve(pair);
+      for (const Pair& pair : open) {
+        if (task_.stop != nullptr && task_.stop->load(std::memory_order_relaxed)) break;
+        solve(pair);
+      }
       if (changed_.empty()) break;
       open = still_open(open);
     }

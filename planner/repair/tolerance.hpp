@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -24,6 +25,7 @@ struct ToleranceTask {
   std::span<const char> free = {};  ///< one flag a cell: a target may be moved here; empty: no target moves
   std::span<const double> radius_m = {};    ///< of each of `from`: two keep the sum where it is more; empty: nobody's
   std::span<const char> fixed_target = {};  ///< one flag a target: stays where it is; empty: none has to
+  const std::atomic<bool>* stop = nullptr;  ///< becomes true when the answer is no longer wanted; may be missing
 };
 
 struct Tolerance {

@@ -306,6 +306,7 @@ class ChainBuilder {
       const auto radius_m = radius_toward(k);
       task.kind = kind;
       task.radius_m = radius_m;
+      task.stop = progress_.stop;
       Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {
         for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];

@@ -117,6 +117,7 @@ class Mender {
                          double speed_mps) const {
     LegTask leg{&ways_, from, to, std::max(0.0, speed_mps * walked_s - kRounding_m), task_.chain->clearance_m};
     leg.late_share = std::min(1.0, to_seconds(show_.stage.lag) / walked_s);
+    leg.stop = progress_.stop;
     return settle(leg);
   }
 

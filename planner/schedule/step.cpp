@@ -75,6 +75,7 @@ class OrderedStep {
       step.leg = pair(step.cells, task_.snap.ways->standable(), hold);
       if (!step.leg.to.empty()) step.cells = std::move(step.leg.to);
       step.leg.to.clear();
+      if (stopped()) return step;
       if (!step.leg.conflicts.empty()) {
         wait(step, round, hold);
         continue;
@@ -117,6 +118,8 @@ class OrderedStep {
     }
     return places;
   }
+
+  [[nodiscard]] bool stopped() const { return task_.stop != nullptr && task_.stop->load(std::memory_order_relaxed); }
 
   [[nodiscard]] SnapTask ordered_snap() const {
     SnapTask snap_task = task_.snap;
@@ -194,6 +197,7 @@ class OrderedStep {
     leg.stagger_share = task_.walked_s > 0 ? task_.wait_s / task_.walked_s : 0;
     leg.free = free;
     leg.fixed_target = hold;
+    leg.stop = task_.stop;
     return settle(leg);
   }
 
@@ -301,7 +305,8 @@ Step walk_step(const StepTask& task) {
 Step walk_step(const StepTask& task, const StageKey& floor, Stages* stages, StageCount* count) {
   const OrderedStep step(task);
   if (stages == nullptr && count == nullptr) return step.numbered(step.run());
-  return step.numbered(recall(stages, step.key(floor), count, decoded, encoded, [&] { return step.run(); }));
+  const auto make = [&] { return step.run(); };
+  return step.numbered(recall(stages, step.key(floor), count, decoded, encoded, make, task.stop));
 }
 
 }  // namespace footlight::planner

@@ -28,6 +28,7 @@ struct StepTask {
   double lag_s = 0;                          ///< how late anybody may be
   double wait_s = 0;                         ///< who waits, waits for multiples of this; 0: nobody does
   std::optional<CellSteps> over_cells;       ///< absent: everybody walks straight
+  const std::atomic<bool>* stop = nullptr;   ///< as LegTask::stop; a step that was stopped is not kept as a stage
 };
 
 struct Step {

@@ -42,9 +42,10 @@ class Settler {
     std::iota(leg.target_of.begin(), leg.target_of.end(), 0U);
     match_walkable(leg.target_of);
     leg.walkable = walkable(leg.target_of);
+    if (stopped()) return leg;
     leg.exchanges = swap_conflicts(leg.target_of);
     loosen(leg);
-    if (!leg.conflicts.empty()) {
+    if (!leg.conflicts.empty() && !stopped()) {
       resolve(leg, close_pairs(leg.target_of));
       loosen(leg);
     }
@@ -63,6 +64,7 @@ class Settler {
   }
 
  private:
+  [[nodiscard]] bool stopped() const { return task_.stop != nullptr && task_.stop->load(std::memory_order_relaxed); }
   [[nodiscard]] bool may_walk(Point from, Point to) const {
     return distance(from, to) <= task_.longest_m && task_.ways->straight(from, to);
   }
@@ -108,6 +110,7 @@ class Settler {
     task.free = task_.free;
     task.radius_m = task_.radius_m;
     task.fixed_target = task_.fixed_target;
+    task.stop = task_.stop;
     const Tolerance found = keep_apart_when_late(task, cells_, leg.target_of);
     leg.exchanges += found.exchanges;
     for (std::size_t j = 0; j < targets_.size() && found.moved > 0; ++j) targets_[j] = grid_.centre(cells_[j]);
@@ -133,7 +136,7 @@ class Settler {
         starts.push_back(sources_[i]);
         goals.push_back(targets_[i]);
       }
-      return assign(starts, goals, WalkCost::squared, task_.longest_m);
+      return assign(starts, goals, WalkCost::squared, task_.longest_m, task_.stop);
     }
     std::vector<Arc> arcs;
     for (std::uint32_t n = 0; n < people.size(); ++n) {
@@ -205,7 +208,7 @@ class Settler {
     std::vector<std::uint32_t> trial = leg.target_of;
     name_conflicts(leg, close);
     const double toll = 2 * grid_.pitch_m() * grid_.pitch_m();
-    for (int round = 0; round < kRounds && !leg.conflicts.empty(); ++round) {
+    for (int round = 0; round < kRounds && !leg.conflicts.empty() && !stopped(); ++round) {
       for (const NearPair& pair : close) {
         penalties[{pair.a, trial[pair.a]}] += toll;
         penalties[{pair.b, trial[pair.b]}] += toll;

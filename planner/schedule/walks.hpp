@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -29,6 +30,7 @@ struct LegTask {
   std::span<const char> free = {};
   std::span<const double> radius_m = {};  ///< of who is on from[i]: two keep the sum where it is more; empty: nobody's
   std::span<const char> fixed_target = {};  ///< one flag a target that must not be moved; empty: none
+  const std::atomic<bool>* stop = nullptr;  ///< becomes true when the answer is no longer wanted; may be missing
 };
 
 struct Leg {
@@ -53,6 +55,7 @@ struct Leg {
 /// left. What conflicts only when people are late is then solved by small changes (`keep_apart_when_late`). Of a
 /// pairing that is not walkable at the start the kinds with such walks get the exact pairing under the limits where
 /// there is one.
+/// @return a bijection also when it was stopped
 [[nodiscard]] Leg settle(const LegTask& task);
 
 }  // namespace footlight::planner

@@ -114,6 +114,17 @@ Instance short_walks(int people) {
   return instance;
 }
 
+/// Nobody may walk farther than four fifths of the longest walk without a limit.
+void assign_limited(benchmark::State& state, const std::string& name, int people) {
+  const Instance instance = wandering_hole(people);
+  const auto free = planner::assign(instance.sources, instance.targets, WalkCost::squared, kNoLimit);
+  double longest_m = 0;
+  for (std::size_t i = 0; i < instance.sources.size(); ++i) {
+    longest_m = std::max(longest_m, distance(instance.sources[i], instance.targets[free->target_of[i]]));
+  }
+  assign_all(state, name, instance, WalkCost::squared, 0.8 * longest_m);
+}
+
 #ifdef FOOTLIGHT_HAS_LEMON
 void network_simplex(benchmark::State& state, Scene scene, WalkCost cost, int people) {
   const Instance instance = make_instance(scene, people);
@@ -193,6 +204,13 @@ void register_assignment(const Effort& effort) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
       assign_all(state, name, short_walks(people), WalkCost::squared, 5.0);
     })->Repetitions(effort.repetitions());
+  }
+  for (const int people : {3290, 10'000, 100'000}) {
+    if (effort.quick && people > 10'000) continue;
+    const std::string name = job_name("ours", "assignment squared under_a_limit", people);
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+      assign_limited(state, name, people);
+    })->Repetitions(people > 10'000 ? 1 : effort.repetitions());
   }
 }
 

@@ -96,4 +96,15 @@ Instance make_instance(Scene scene, int people) {
   return {};
 }
 
+Instance wandering_hole(int people) {
+  const double size = std::sqrt(static_cast<double>(people));
+  const auto floor = [&](double hole_x, double hole_y) {
+    return lowest(people, size, [=](double x, double y) {
+      const bool in_hole = std::hypot(x - hole_x * size, y - hole_y * size) < 0.2 * size;
+      return std::max(std::abs(x) * 0.75, std::abs(y)) + (in_hole ? 10 * size : 0);
+    });
+  };
+  return {floor(-0.2, 0), floor(0.16, 0.09)};
+}
+
 }  // namespace footlight::bench

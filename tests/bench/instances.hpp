@@ -25,6 +25,10 @@ inline constexpr Scene kScenes[] = {Scene::disk_to_ring, Scene::block_to_letters
 [[nodiscard]] std::string_view to_text(Scene scene);
 [[nodiscard]] Instance make_instance(Scene scene, int people);
 
+/// A full floor of 4 : 3 with a hole that wanders: whoever makes room for it moves others, far around, so that a
+/// longest walk that binds is felt far away.
+[[nodiscard]] Instance wandering_hole(int people);
+
 /// Distance from the middle of a flower of five petals, in petals: the flower of size s is where this is below s.
 [[nodiscard]] double outside_of_flower(double x, double y, double turn);
 /// The flower as large as the frame is high, turned by `turn` radians.

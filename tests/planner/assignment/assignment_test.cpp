@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -165,6 +166,44 @@ TEST(Assign, EqualsTheSparseOneOverAllAllowedPairs) {
   }
   EXPECT_GT(infeasible, 5);
   EXPECT_GT(feasible, 20);
+}
+
+TEST(Assign, ALongestWalkThatBindsAsksForLittleMoreThanNone) {
+  const auto [a, b] = bench::wandering_hole(5200);
+  const auto free = assign(a, b, WalkCost::squared, kNoLimit);
+  double longest_m = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) longest_m = std::max(longest_m, distance(a[i], b[free->target_of[i]]));
+  const auto found = assign(a, b, WalkCost::squared, 0.8 * longest_m);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_GT(found->cost, free->cost);
+  EXPECT_EQ(found->gap, 0);
+  EXPECT_LT(2 * found->looked_at, 3 * free->looked_at);
+}
+
+TEST(Assign, WhoCanReachOneTargetOnlyGoesThere) {
+  Points a;
+  Points b;
+  for (int i = 0; i < 400; ++i) {
+    a.push_back({10.0 * (i % 20), 10.0 * (i / 20)});
+    b.push_back(a.back() + Point{i % 3 == 0 ? 2.0 : -1.0, 1.0});
+  }
+  for (const WalkCost cost : kBothCosts) {
+    const auto found = assign(a, b, cost, 2.5);
+    ASSERT_TRUE(found.has_value());
+    for (std::uint32_t i = 0; i < a.size(); ++i) EXPECT_EQ(found->target_of[i], i);
+    expect_proved(a, b, cost, 2.5, *found);
+    EXPECT_FALSE(assign(a, b, cost, 2.0).has_value());
+  }
+}
+
+TEST(Assign, ThereIsNoAnswerWhenNobodyWantsItAnyMore) {
+  const std::atomic<bool> stopped = true;
+  const auto a = distinct_cells(1, 300, 40);
+  const auto b = distinct_cells(2, 300, 40);
+  for (const WalkCost cost : kBothCosts) {
+    EXPECT_FALSE(assign(a, b, cost, kNoLimit, &stopped).has_value());
+    EXPECT_FALSE(assign(a, b, cost, 30, &stopped).has_value());
+  }
 }
 
 TEST(Assign, TakesPointsThatLieOnNoGrid) {

@@ -2,12 +2,14 @@
 #include "planner/schedule/walks.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
 #include "planner/repair/closest_approach.hpp"
+#include "planner/schedule/step.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -43,6 +45,41 @@ TEST(Settle, TargetsTooFarForTheirPeopleAreHandedOutAnew) {
   EXPECT_TRUE(leg.walkable);
   EXPECT_EQ(leg.target_of, (std::vector<std::uint32_t>{1, 2, 0}));
   EXPECT_FALSE(settle({&ways, from, to, 2.5, 0.5}).walkable);
+}
+
+TEST(Settle, WhoHasBeenStoppedKeepsHerTarget) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> from{CellIndex(0), CellIndex(5)};
+  const std::vector<CellIndex> to{CellIndex(6), CellIndex(1)};
+  const std::atomic<bool> stopped = true;
+  LegTask task{&ways, from, to, 9, 0.5};
+  task.stop = &stopped;
+  EXPECT_EQ(settle(task).target_of, (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST(WalkStep, WhatWasStoppedIsNotKeptAsAStage) {
+  Stage stage;
+  stage.grid = *Grid::make(GridKind::square, 10, 2, 1.0);
+  const Ways ways(stage, 0.25);
+  const std::vector<CellIndex> now{CellIndex(0), CellIndex(5)};
+  const std::vector<CellIndex> own{CellIndex(6), CellIndex(1)};
+  std::atomic<bool> stopped = true;
+  StepTask task;
+  task.snap.ways = &ways;
+  task.snap.now = now;
+  task.snap.own = own;
+  task.snap.longest_m = 9;
+  task.exact = true;
+  task.walked_s = 9;
+  task.stop = &stopped;
+  Stages stages;
+  (void)walk_step(task, {}, &stages, nullptr);
+  EXPECT_EQ(stages.size(), 0U);
+  stopped = false;
+  EXPECT_EQ(walk_step(task, {}, &stages, nullptr).leg.target_of, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(stages.size(), 1U);
 }
 
 TEST(Settle, SaysWhoIsTooCloseWhereNothingHelps) {
