@@ -74,8 +74,7 @@ double best_of_two(const std::vector<std::vector<int>>& pictures) {
             before = std::min(before, least[static_cast<std::size_t>(c)][static_cast<std::size_t>(d)]);
           }
         }
-        next[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
-            before + iou({a, b}, pictures[k]);
+        next[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = before + iou({a, b}, pictures[k]);
       }
     }
     least = next;
@@ -111,8 +110,8 @@ TEST(DrawingBound, IsNeverAboveTheBestOfAllWaysToWalk) {
 TEST(DrawingBound, APictureThatJumpsFartherThanPeopleWalkCannotBeDrawn) {
   // Two of eight cells, at one end and at the other: people are at one of them, or on the way.
   const std::vector<std::vector<int>> pictures{{0, 1}, {0, 1}, {6, 7}, {6, 7}, {0, 1}, {0, 1}};
-  const auto bound = bound_drawing(row_plan(std::vector<std::vector<int>>(6, {0, 1})), SectionIndex(0),
-                                   row_film(pictures), 16);
+  const auto bound =
+      bound_drawing(row_plan(std::vector<std::vector<int>>(6, {0, 1})), SectionIndex(0), row_film(pictures), 16);
   ASSERT_TRUE(bound);
   EXPECT_EQ(bound->nobody_walks, 0);
   const double best = best_of_two(pictures) / 6;
