@@ -23,6 +23,7 @@ constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never show
 constexpr int kMostOperations = 64;        // a step ends, whatever a driver says
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr Duration kRetryBusy = milliseconds(1);
+constexpr Duration kPutOff = milliseconds(100);  // a switch that is put off by more has been called off
 constexpr std::uint8_t kStateShowing = 1;
 constexpr std::uint8_t kStateHold = 2;
 
@@ -63,6 +64,7 @@ Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
   if (nodes_.empty()) return kNever;  // nobody hears: on CAN not even an acknowledgement comes
   now_ = now;
   show_time_ = target.show_time;
+  rate_ = target.rate;
   refused_ = false;
   follow(target);
   follow_time();
@@ -122,7 +124,8 @@ void BusLoop::follow(const BusTarget& target) noexcept {
   } else if (target.current == next_) {
     // Due already and not latched yet: `latch_next` does so as soon as the wire is free.
     next_at_ = std::min(next_at_, now_);
-  } else if (target.current != previous_ || target.next != current_) {
+  } else if (target.current != previous_ || target.next != current_ ||
+             (target.next_at != kNever ? target.next_at - now_ > latch_time_ + kPutOff : true)) {
     seek(target.current);  // else: latched ahead by its own time on the wire
     aim(target.next, target.next_at);
   }
@@ -130,9 +133,14 @@ void BusLoop::follow(const BusTarget& target) noexcept {
 
 void BusLoop::aim(std::size_t next, Instant at) noexcept {
   if (next == next_ && at == next_at_) return;
+  // Where a latch takes whatever is pending, looks that were preloaded for a moment that is called off have to go, or
+  // no question could be asked until another moment came.
+  const bool called_off = next != next_ || at == kNever || (next_at_ != kNever && at - next_at_ > kPutOff);
+  if (unlatched_ && called_off && !can_.sequenced_latch) seek(current_);
   if (next != next_) {
     for (NodeState& node : nodes_) {
-      node.changes = next != current_ && !std::ranges::equal(looks(current_, node), looks(next, node));
+      node.stale = node.stale || (node.offered == next_ && next_ != current_);
+      node.changes = next != current_ && (node.stale || !std::ranges::equal(looks(current_, node), looks(next, node)));
     }
   }
   next_ = next;
@@ -144,6 +152,9 @@ void BusLoop::aim(std::size_t next, Instant at) noexcept {
 }
 
 void BusLoop::seek(std::size_t k) noexcept {
+  for (NodeState& node : nodes_) {
+    node.stale = node.stale || (node.offered == next_ && next_ != current_);
+  }
   previous_ = kNone;
   current_ = k;
   next_ = k;
@@ -155,7 +166,7 @@ void BusLoop::seek(std::size_t k) noexcept {
     node.right = false;
     // Whoever shows it already stays as it is; without a sequence something unknown may be pending, which a question
     // by SYNC would light: there the preload comes first.
-    node.verify = can_.readback && can_.sequenced_latch;
+    node.verify = can_.readback && can_.sequenced_latch && !node.stale;
     node.changes = false;
     node.counted = true;
     node.pending = kNone;
@@ -218,6 +229,7 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
   switch (event.kind) {
     case Kind::preloaded:
       node->in_flight = false;
+      node->stale = false;
       node->rest = {};
       if (node->offered != kNone && event.sequence == sequence_of(node->offered)) node->pending = node->offered;
       if (!can_.pushes_status) {
@@ -380,15 +392,14 @@ std::vector<NodeIndex> BusLoop::quarantined() const {
   return list;
 }
 
-Duration BusLoop::notice(std::size_t k) const {
-  if (k == 0) return {};
+Duration BusLoop::notice(std::size_t from, std::size_t to) const noexcept {
   if (can_.sequenced_latch) {
     // What is on the wire at the GO ends, then the latch takes its time.
     return latch_time_ + std::max({status_time_, heartbeat_time_, upload_time_, preload_time_[kChannelsPerNode]});
   }
   Duration sum{};
   for (const NodeState& node : nodes_) {
-    if (!std::ranges::equal(looks(k - 1, node), looks(k, node))) sum += preload_time_[node.address.channels];
+    if (!std::ranges::equal(looks(from, node), looks(to, node))) sum += preload_time_[node.address.channels];
   }
   return 3 * sum + 2 * latch_time_ + milliseconds(20);
 }
@@ -409,7 +420,7 @@ std::uint64_t BusLoop::changed_channels(const NodeState& node) const noexcept {
   const auto now = looks(current_, node);
   std::uint64_t changed = 0;
   for (std::size_t c = 0; c < now.size(); ++c) {
-    changed += now[c] != (current_ == 0 ? kDark : looks(current_ - 1, node)[c]) ? 1 : 0;
+    changed += now[c] != (previous_ == kNone ? kDark : looks(previous_, node)[c]) ? 1 : 0;
   }
   return changed;
 }

@@ -20,6 +20,7 @@ struct BusTarget {
   std::size_t next = 0;      ///< the one that comes after it; `current` when there is none
   Instant next_at = kNever;  ///< clock time of `next`; kNever while the show waits for GO
   Duration show_time{};      ///< for heartbeats
+  double rate = 1;           ///< of show time against the clock, while it goes on
 
   friend bool operator==(const BusTarget&, const BusTarget&) = default;
 };
@@ -69,9 +70,11 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::size_t unconfirmed() const noexcept;
   /// How late the last bit of each latch left, as far as the loop can know.
   [[nodiscard]] const Lateness& lateness() const noexcept { return lateness_; }
-  /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not
-  /// late.
-  [[nodiscard]] Duration notice(std::size_t k) const;
+  /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not late.
+  /// Any thread, at any time. @param from what is lit before  O(nodes)
+  [[nodiscard]] Duration notice(std::size_t from, std::size_t to) const noexcept;
+  /// From the switch before.
+  [[nodiscard]] Duration notice(std::size_t k) const { return k == 0 ? Duration{} : notice(k - 1, k); }
   /// Time in which a silent node is noticed: 1 s, or a round of questions that takes a fifth of the bus.
   [[nodiscard]] Duration suspect_time() const;
 
@@ -100,6 +103,7 @@ class BusLoop final : private drivers::EventSink {
     std::uint8_t offers = 0;      ///< preloads of `offered` sent
     std::size_t offered = kNone;  ///< switch preloaded last
     bool in_flight = false;       ///< a preload is under way
+    bool stale = false;           ///< holds looks of a switch that will not come: they have to be written over
     std::size_t pending = kNone;  ///< switch whose preload is receipted and not yet latched
     Instant silent_since;         ///< first of the misses in a row
     Instant ask_at;               ///< not before, after a miss
@@ -181,6 +185,7 @@ class BusLoop final : private drivers::EventSink {
 
   Instant now_;
   Duration show_time_{};
+  double rate_ = 1;
   std::size_t previous_ = kNone;  ///< switch before `current_`
   std::size_t current_ = 0;
   std::size_t next_ = 0;

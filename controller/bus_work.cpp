@@ -238,7 +238,8 @@ void BusLoop::follow_time() noexcept {
 
 bool BusLoop::send_time() noexcept {
   if (worn_.empty() || now_ < sync_at_ || !fits(sync_time_time_)) return false;
-  if (!took(driver_.sync_time(show_time_, goes_ ? 1 : 0, now_), Operation::heartbeat, sync_time_time_)) return false;
+  if (!took(driver_.sync_time(show_time_, goes_ ? rate_ : 0, now_), Operation::heartbeat, sync_time_time_))
+    return false;
   sync_at_ = now_ + kTimeSync;
   return true;
 }
@@ -246,9 +247,8 @@ bool BusLoop::send_time() noexcept {
 /// What a wearable should tell now, then what it should tell after the next switch.
 bool BusLoop::send_content() noexcept {
   if (worn_.empty() || !fits(std::max(content_time_, time_of(Operation::content)))) return false;
-  const WearableContents& contents = schedule_.contents();
   const auto same = [&](std::size_t w, std::size_t a, std::size_t b) {
-    return a != kNone && (a == b || contents.at(a, w) == contents.at(b, w));
+    return a != kNone && (a == b || schedule_.content(a, w) == schedule_.content(b, w));
   };
   for (WornState& worn : worn_) {
     const NodeState& node = nodes_[worn.position];
@@ -267,9 +267,8 @@ bool BusLoop::send_content() noexcept {
 
 bool BusLoop::send_content(WornState& worn, std::size_t k) noexcept {
   const NodeState& node = nodes_[worn.position];
-  const drivers::SendStatus status =
-      driver_.send_content(node.address, worn.channel, k == current_ ? node.shown : sequence_of(k),
-                           schedule_.contents().at(k, worn.index), now_);
+  const drivers::SendStatus status = driver_.send_content(
+      node.address, worn.channel, k == current_ ? node.shown : sequence_of(k), schedule_.content(k, worn.index), now_);
   if (!took(status, Operation::content, content_time_)) return false;
   sent_content_ = k;
   return true;

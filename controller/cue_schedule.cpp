@@ -5,12 +5,12 @@
 #include <array>
 #include <charconv>
 #include <limits>
-#include <map>
 
 #include "controller/bus_budget.hpp"
 #include "controller/crowd.hpp"
 #include "controller/cue_list.hpp"
 #include "controller/lamp.hpp"
+#include "controller/look_book.hpp"
 #include "controller/patterns.hpp"
 #include "core/check.hpp"
 #include "core/diagnostic.hpp"
@@ -24,51 +24,6 @@ constexpr double kNearPitches = 1.5;
 struct LampAt {
   CellIndex cell;
   std::size_t slot = 0;  ///< node x 32 + channel
-};
-
-/// All possible looks by (colour, role, pattern). Numbers are given to those that are used.
-class LookBook {
- public:
-  LookBook(const Show& show, std::size_t performers) {
-    std::map<Colour, std::uint32_t> numbers;
-    for (std::size_t p = 0; p < performers; ++p) {
-      const auto& group = p < show.performers.size() ? show.performers[p].group : std::nullopt;
-      const Colour colour = group ? show.groups.at(group->at()).colour : show.default_colour;
-      colour_of_.push_back(numbers.try_emplace(colour, static_cast<std::uint32_t>(numbers.size())).first->second);
-    }
-    std::vector<Colour> colours(numbers.size());
-    for (const auto& [colour, number] : numbers) colours[number] = colour;
-    for (const Colour colour : colours) {
-      for (int r = 0; r < kLampRoles; ++r) {
-        const auto found = show.looks.find(static_cast<LampRole>(r));
-        const LookChoice choice = found != show.looks.end() ? found->second : default_choice(static_cast<LampRole>(r));
-        const Look look{choice.colour.value_or(colour), choice.effect, choice.brightness};
-        for (int pattern = 0; pattern < kPatterns; ++pattern) looks_.push_back(with_pattern(look, pattern));
-      }
-    }
-  }
-
-  /// Place of a lamp's look in the book.
-  [[nodiscard]] std::uint16_t entry(const Lamp& lamp, int pattern) const {
-    const auto role = static_cast<std::size_t>(*lamp.role);
-    return static_cast<std::uint16_t>((colour_of_[lamp.whose.at()] * kLampRoles + role) * kPatterns +
-                                      static_cast<std::size_t>(pattern));
-  }
-  [[nodiscard]] const Look& look(std::uint16_t entry) const { return looks_[entry]; }
-  [[nodiscard]] std::size_t size() const { return looks_.size(); }
-  /// Most looks that a show can need with so many patterns.
-  [[nodiscard]] std::size_t different(int patterns) const {
-    std::vector<Look> list;
-    for (std::size_t i = 0; i < looks_.size(); ++i) {
-      if (static_cast<int>(i % kPatterns) < patterns) list.push_back(looks_[i]);
-    }
-    std::sort(list.begin(), list.end());
-    return static_cast<std::size_t>(std::unique(list.begin(), list.end()) - list.begin());
-  }
-
- private:
-  std::vector<std::uint32_t> colour_of_;
-  std::vector<Look> looks_;
 };
 
 constexpr std::uint16_t kDarkEntry = std::numeric_limits<std::uint16_t>::max();
@@ -120,7 +75,23 @@ class Compiler {
       });
     }
     pattern_ = near.patterns(patterns);
-    return write();
+    return number(write());
+  }
+
+  /// With the numbers of another schedule, for lamps that are lit beside it.
+  ResetMove compile_like(const CueSchedule& schedule) {
+    pattern_ = schedule.numbers().pattern;
+    const Written written = write();
+    ResetMove move;
+    for (const std::uint16_t entry : written.entries) move.table.push_back(number_like(schedule.numbers(), entry));
+    move.switches = switches();
+    move.contents = std::move(contents_.table);
+    // Here people stand already: the show's own lamps say so.
+    const auto row = static_cast<std::ptrdiff_t>(nodes_ * kChannelsPerNode);
+    move.switches.erase(move.switches.begin());
+    move.table.erase(move.table.begin(), move.table.begin() + row);
+    move.contents.erase(move.contents.begin(), move.contents.begin() + static_cast<std::ptrdiff_t>(worn_.size()));
+    return move;
   }
 
  private:
@@ -162,7 +133,14 @@ class Compiler {
     return book_.look(entry).brightness == 0 ? kDarkEntry : entry;
   }
 
-  Result<CueSchedule> write() {
+  /// A book's entry for every switch and channel, and which entries are used.
+  struct Written {
+    std::vector<std::uint16_t> entries;
+    std::vector<bool> used;
+    LampConfusion confusion;
+  };
+
+  Written write() {
     const std::size_t row = nodes_ * kChannelsPerNode;
     contents_.worn = worn_;
     std::vector<std::uint16_t> entries(crowd_.moments().size() * row, kDarkEntry);
@@ -191,11 +169,29 @@ class Compiler {
         confusion.after += book_.look(look_a) == book_.look(look_b) ? 1 : 0;
       });
     }
-    return number(entries, used, confusion);
+    return {std::move(entries), std::move(used), confusion};
   }
 
-  Result<CueSchedule> number(const std::vector<std::uint16_t>& entries, const std::vector<bool>& used,
-                             LampConfusion confusion) {
+  static LookIndex number_like(const LookNumbers& numbers, std::uint16_t entry) {
+    if (entry == kDarkEntry) return kDark;
+    for (const std::uint16_t like : LookBook::like(entry)) {
+      if (numbers.of_entry[like] != kDark) return numbers.of_entry[like];
+    }
+    for (const LookIndex any : numbers.of_entry) {
+      if (any != kDark) return any;
+    }
+    return kDark;
+  }
+
+  [[nodiscard]] std::vector<Switch> switches() const {
+    std::vector<Switch> switches;
+    for (const Moment& moment : crowd_.moments())
+      switches.push_back({moment.time, moment.cause, moment.settled, moment.cue});
+    return switches;
+  }
+
+  Result<CueSchedule> number(const Written& written) {
+    const auto& [entries, used, confusion] = written;
     std::vector<Look> looks;
     for (std::size_t e = 0; e < used.size(); ++e) {
       if (used[e]) looks.push_back(book_.look(static_cast<std::uint16_t>(e)));
@@ -213,12 +209,9 @@ class Compiler {
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (entries[i] != kDarkEntry) table[i] = number_of[entries[i]];
     }
-    std::vector<Switch> switches;
-    for (const Moment& moment : crowd_.moments())
-      switches.push_back({moment.time, moment.cause, moment.settled, moment.cue});
-    CueSchedule schedule(std::move(looks), std::move(switches), nodes_, std::move(table), plan_byte_of(plan_),
-                         confusion);
+    CueSchedule schedule(std::move(looks), switches(), nodes_, std::move(table), plan_byte_of(plan_), confusion);
     schedule.set_contents(std::move(contents_));
+    schedule.set_numbers({pattern_, std::move(number_of)});
     return schedule;
   }
 
@@ -259,9 +252,35 @@ void CueSchedule::set_contents(WearableContents contents) {
   contents_ = std::move(contents);
 }
 
+const ResetMove& CueSchedule::reset_of(std::size_t k) const {
+  const std::size_t slot = (k - switches_.size()) / kMostResetSwitches;
+  FL_CHECK(slot < resets_->count.load(std::memory_order_acquire));
+  return *resets_->moves[slot];
+}
+
+std::optional<std::size_t> CueSchedule::add(ResetMove move) {
+  const std::size_t slot = resets_->count.load(std::memory_order_relaxed);
+  const std::size_t rows = move.switches.size();
+  if (slot == kMostResets || rows > kMostResetSwitches) return std::nullopt;
+  FL_CHECK(move.table.size() == rows * nodes_ * kChannelsPerNode);
+  FL_CHECK(move.contents.size() == rows * contents_.worn.size());
+  resets_->moves[slot] = std::make_unique<const ResetMove>(std::move(move));
+  resets_->count.store(slot + 1, std::memory_order_release);
+  return switches_.size() + slot * kMostResetSwitches;
+}
+
 std::span<const LookIndex> CueSchedule::looks_of(std::size_t k, NodeIndex node) const {
-  FL_CHECK(k < switches_.size() && node.at() < nodes_);
-  return std::span(table_).subspan((k * nodes_ + node.at()) * kChannelsPerNode, kChannelsPerNode);
+  FL_CHECK(node.at() < nodes_);
+  const bool own = k < switches_.size();
+  const std::size_t row = own ? k : (k - switches_.size()) % kMostResetSwitches;
+  const std::span<const LookIndex> table(own ? table_ : reset_of(k).table);
+  FL_CHECK((row + 1) * nodes_ * kChannelsPerNode <= table.size());
+  return table.subspan((row * nodes_ + node.at()) * kChannelsPerNode, kChannelsPerNode);
+}
+
+const drivers::WearableContent& CueSchedule::content(std::size_t k, std::size_t w) const {
+  if (k < switches_.size()) return contents_.at(k, w);
+  return reset_of(k).contents.at((k - switches_.size()) % kMostResetSwitches * contents_.worn.size() + w);
 }
 
 std::uint8_t plan_byte_of(const Plan& plan) {
@@ -304,6 +323,11 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);
   if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show);
   return schedule;
+}
+
+ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule) {
+  FL_CHECK(move.valid && schedule.numbers().pattern.size() == move.tracks.size());
+  return Compiler(show, move, rig, {}).compile_like(schedule);
 }
 
 }  // namespace footlight::controller

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,9 +35,32 @@ struct LampConfusion {
   std::uint64_t after = 0;   ///< with the assigned patterns
 };
 
+/// Everybody's way back to an earlier place, as lamps tell it: switches of its own beside those of the show.
+struct ResetMove {
+  /// `time` counts from the beginning of the move; the last one is not lit: there everybody stands where the show goes
+  /// on, and the show's own lamps say so.
+  std::vector<Switch> switches;
+  std::vector<LookIndex> table{};                    ///< switches x nodes x 32
+  std::vector<drivers::WearableContent> contents{};  ///< switches x worn
+
+  [[nodiscard]] Duration length() const {
+    return switches.empty() ? Duration{} : switches.back().time.time_since_epoch();
+  }
+};
+
+/// Whose lamp has which number, so that what is compiled later speaks the same language.
+struct LookNumbers {
+  std::vector<std::uint8_t> pattern;  ///< of each performer
+  std::vector<LookIndex> of_entry;    ///< of each look that the show could have (LookBook); kDark: it is not used
+};
+
 /// What every lamp and wearable shows from switch to switch: a function of show time alone.
 class CueSchedule {
  public:
+  /// Reset moves that one schedule takes, and switches that each may have.
+  static constexpr std::size_t kMostResets = 4096;
+  static constexpr std::size_t kMostResetSwitches = 1024;
+
   CueSchedule(std::vector<Look> looks, std::vector<Switch> switches, std::size_t nodes, std::vector<LookIndex> table,
               std::uint8_t plan_byte, LampConfusion confusion);
 
@@ -43,16 +68,31 @@ class CueSchedule {
   [[nodiscard]] const std::vector<Look>& looks() const { return looks_; }
   /// Ascending by time; the first is the opening, lit before the show starts.
   [[nodiscard]] const std::vector<Switch>& switches() const { return switches_; }
-  /// All 32 channels of a node from switch `k` until the next; unused channels are dark.
+  /// All 32 channels of a node from switch `k` until the next; unused channels are dark. @param k of the show, or of a
+  /// reset move that was added. Any thread.
   [[nodiscard]] std::span<const LookIndex> looks_of(std::size_t k, NodeIndex node) const;
+  /// What wearable `w` of contents() tells from switch `k` on; `k` as above. Any thread.
+  [[nodiscard]] const drivers::WearableContent& content(std::size_t k, std::size_t w) const;
+  /// Takes a reset move, beside threads that read what is there already. One thread.
+  /// @return the number of its first switch, for as long as the schedule lives; nothing when there are too many
+  std::optional<std::size_t> add(ResetMove move);
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
   /// What wearables tell besides their looks; empty unless it was set.
   [[nodiscard]] const WearableContents& contents() const { return contents_; }
   /// @param contents of as many switches
   void set_contents(WearableContents contents);
+  [[nodiscard]] const LookNumbers& numbers() const { return numbers_; }
+  void set_numbers(LookNumbers numbers) { numbers_ = std::move(numbers); }
 
  private:
+  using Slot = std::unique_ptr<const ResetMove>;
+  struct Resets {
+    std::array<Slot, kMostResets> moves;
+    std::atomic<std::size_t> count{0};
+  };
+  [[nodiscard]] const ResetMove& reset_of(std::size_t k) const;
+
   std::vector<Look> looks_;
   std::vector<Switch> switches_;
   std::size_t nodes_ = 0;
@@ -60,6 +100,8 @@ class CueSchedule {
   std::uint8_t plan_byte_ = 0;
   LampConfusion confusion_;
   WearableContents contents_;
+  LookNumbers numbers_;
+  std::unique_ptr<Resets> resets_ = std::make_unique<Resets>();
 };
 
 /// The byte of a plan that all frames of a show carry: the last two digits of its hash; a sum over its marks where it
@@ -78,5 +120,11 @@ class CueSchedule {
 /// Complexity: O(switches x (performers + cells + markers)). Deterministic.
 [[nodiscard]] Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                                  const std::vector<std::unique_ptr<drivers::Driver>>& drivers);
+
+/// Compiles a way back with the looks and patterns of the show's schedule; a look that the show never needs is replaced
+/// by the most similar one that it has (another pattern, then another role of the same colour).
+/// @param move a valid plan of two sections: people stand, from time 0 on, then walk
+/// Complexity: as build_schedule.
+[[nodiscard]] ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule);
 
 }  // namespace footlight::controller

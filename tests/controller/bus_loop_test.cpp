@@ -58,6 +58,8 @@ struct Bench {
     target.current = stands_at.value_or(switch_at(schedule, now));
     target.next = std::min(target.current + 1, schedule.switches().size() - 1);
     if (target.next != target.current && !stands_at) target.next_at = schedule.switches()[target.next].time;
+    if (next_is && target.current < *next_is) target.next = *next_is;
+    if (next_at && target.next == next_is) target.next_at = *next_at;
     return target;
   }
 
@@ -88,6 +90,8 @@ struct Bench {
   BusLoop loop;
   Instant now = kStart;
   std::optional<std::size_t> stands_at;  ///< a switch after which the show waits for GO
+  std::optional<std::size_t> next_is;    ///< a jump: not the one that follows
+  std::optional<Instant> next_at;        ///< and when it comes
 };
 
 using Nobody = std::vector<std::size_t>;
@@ -339,8 +343,8 @@ TEST(SequencedBus, WhatIsRefusedForGoodIsNotSentAgainButOnceASecond) {
 }
 
 TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
-  const CueSchedule schedule = schedule_of(3, 4, every_switch);
-  Bench bench(schedule, 3, false);
+  Bench bench(schedule_of(3, 4, every_switch), 3, false);
+  const CueSchedule& schedule = bench.schedule;
   for (std::size_t n = 0; n < 3; ++n) {
     auto& node = bench.driver.node(n);
     const auto looks = schedule.looks_of(2, NodeIndex::of(n)).first(kChannels);
@@ -363,6 +367,47 @@ TEST(SequencedBus, SequencesGoFromOneTo240AndWrap) {
   EXPECT_EQ(sequence_of(0), 1);
   EXPECT_EQ(sequence_of(239), 240);
   EXPECT_EQ(sequence_of(240), 1);
+}
+
+TEST_P(AnyBus, ASwitchThatIsCalledOffInItsLastMillisecondIsTakenBack) {
+  Bench bench(schedule_of(4, 5, every_switch), 4, GetParam());
+  bench.run_until(bench.schedule.switches()[2].time - microseconds(500));
+  ASSERT_EQ(bench.loop.lit(), 2U) << "its latch is on the wire";
+  bench.stands_at = 1;
+  bench.run_until(bench.now + milliseconds(300));
+  EXPECT_EQ(bench.wrong(4, 1), Nobody{});
+  EXPECT_EQ(bench.loop.unconfirmed(), 0U);
+}
+
+TEST_P(AnyBus, WhoRebootsInAHoldIsRightAgainThoughTheNextLooksWerePreloaded) {
+  Bench bench(schedule_of(4, 5, every_switch), 4, GetParam());
+  bench.run_until(bench.schedule.switches()[2].time - milliseconds(10));
+  bench.stands_at = 1;
+  bench.run_until(bench.now + milliseconds(300));
+  bench.driver.reboot(3);
+  bench.run_until(bench.now + milliseconds(2000));
+  EXPECT_EQ(bench.wrong(4, 1), Nobody{});
+  EXPECT_TRUE(bench.driver.broken_rules.empty());
+}
+
+TEST_P(AnyBus, LooksThatWaitForASwitchThatWillNotComeAreNeverLit) {
+  // Only node 0 changes at switch 3; all change at switch 2, which is called off when it has been preloaded.
+  const auto look = [](std::size_t k, std::size_t n) {
+    return static_cast<LookIndex>(k == 2 ? 9 : k == 3 && n == 0 ? 5 : 1);
+  };
+  Bench bench(schedule_of(4, 5, look), 4, GetParam());
+  bench.run_until(bench.schedule.switches()[2].time - milliseconds(10));
+  bench.stands_at = 1;
+  bench.next_is = 3;
+  bench.run_until(bench.now + milliseconds(400));
+  bench.next_at = bench.now + milliseconds(300);
+  const Instant end = *bench.next_at + milliseconds(100);
+  while (bench.now < end) {
+    if (bench.now >= *bench.next_at) bench.stands_at = 3;
+    bench.run_until(bench.now + milliseconds(1));
+    for (std::size_t n = 1; n < 4; ++n) ASSERT_TRUE(bench.right(n, 1)) << n;
+  }
+  EXPECT_EQ(bench.wrong(4, 3), Nobody{});
 }
 
 TEST(SequencedBus, LooksOfTheNextSwitchWaitInTheNodesWhileTheShowWaits) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -83,13 +84,13 @@ class FakeDriver final : public drivers::Driver {
                               std::span<const LookIndex> looks, Instant now) override {
     if (busy_) return drivers::SendStatus::busy;
     looks_.assign(looks.begin(), looks.end());
-    preloaded_since_latch_.push_back(sequence);
+    preloaded_since_latch_[address.node.at()] = sequence;
     return take({Kind::preload, address.node, sequence, now}, milliseconds(4));
   }
   drivers::SendStatus latch(drivers::Sequence sequence, Instant now) override {
     if (busy_) return drivers::SendStatus::busy;
     // Sequences of one test do not wrap.
-    for (const drivers::Sequence preloaded : preloaded_since_latch_) {
+    for (const auto& [node, preloaded] : preloaded_since_latch_) {
       if (canopen_ && preloaded > sequence) {
         broken_rules.push_back("SYNC " + std::to_string(sequence) + " takes looks of " + std::to_string(preloaded));
       }
@@ -190,7 +191,7 @@ class FakeDriver final : public drivers::Driver {
   std::vector<Node> nodes_;
   std::vector<bool> asked_;
   std::vector<LookIndex> looks_;
-  std::vector<drivers::Sequence> preloaded_since_latch_;
+  std::map<std::size_t, drivers::Sequence> preloaded_since_latch_;  ///< by node: the last one holds
   std::optional<Operation> busy_;
   Instant done_at_ = kNever;
   Instant answers_at_ = kNever;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "core/time.hpp"
+
+namespace footlight::controller {
+
+/// Where a GO comes from.
+enum class GoSource {
+  keyboard,  ///< of a terminal: a key that is held repeats, and nobody tells when it is released
+  lines,     ///< another program
+};
+inline constexpr std::size_t kGoSources = 2;
+
+/// One guard before GO for everything that can press it: a press that bounces, a key that is held and two people who
+/// press at once are one GO.
+///
+/// A key counts again when it has been up, which a terminal shows by silence for `least`: every repeat puts that off.
+/// An input that has been pressed for more than 5 s is switched off until somebody acknowledges it; the others stay.
+/// Nothing is allocated. One thread.
+class GoGuard {
+ public:
+  enum class Verdict { taken, too_soon, held, switched_off };
+
+  /// @param least time between two GOs, from whatever source
+  explicit GoGuard(Duration least) : least_(least) {}
+
+  /// @param now not before the last call
+  Verdict press(GoSource source, Instant now) noexcept;
+  /// Inputs that are switched off count again.
+  void acknowledge() noexcept;
+  [[nodiscard]] bool is_off(GoSource source) const noexcept { return inputs_[static_cast<std::size_t>(source)].off; }
+
+ private:
+  struct Input {
+    Instant last = Instant::min();   ///< press, taken or not
+    Instant first = Instant::min();  ///< of the presses that have gone on since
+    bool off = false;
+  };
+  Duration least_;
+  Instant taken_ = Instant::min();
+  std::array<Input, kGoSources> inputs_{};
+};
+
+}  // namespace footlight::controller

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "controller/cue_engine.hpp"
+#include "controller/go_guard.hpp"
+#include "controller/stands.hpp"
+#include "core/tempo_map.hpp"
+
+namespace footlight::controller {
+
+/// What somebody at the desk wants. Names are resolved before: a command knows positions of the show alone.
+struct Command {
+  enum class Kind : std::uint8_t {
+    go,                ///< whatever comes next: the standby cue, going on, the reset move
+    hold,              ///< freeze: the show stands at once, in the middle of a walk if need be
+    hold_at_end,       ///< of the set: where everybody next stands
+    run_on,            ///< takes `hold_at_end` back
+    back,              ///< to the beginning of this cue; from there, of the one before
+    jump,              ///< to `position`
+    loop,              ///< from `position` to `until`, again and again
+    loop_off,          ///<
+    tempo,             ///< `percent` of the written one
+    step,              ///< a count and no more
+    reset_planned,     ///< the move that was asked for is ready
+    reset_impossible,  ///< there is none
+    placed,            ///< people stand where they must be, by the operator's word: no reset move is needed
+    cancel,            ///< the jump
+    acknowledge,       ///< inputs that were switched off
+  };
+  Kind kind = Kind::go;
+  GoSource source = GoSource::lines;
+  Instant position{};
+  Instant until{};
+  int percent = 100;
+  // Of a reset move.
+  std::uint32_t reset = 0;          ///< as `Rehearsal::Reset::id`
+  std::size_t first = 0;            ///< its first switch in the schedule
+  const ResetMove* move = nullptr;  ///< lives as long as the schedule
+};
+
+enum class Outcome : std::uint8_t {
+  done,
+  cue_started,
+  goes_on,
+  walks_on,  ///< to the end of the walk that a hold has cut; then the reset move is asked for again
+  reset_started,
+  // refused
+  too_soon,
+  key_held,
+  switched_off,
+  cue_runs,
+  nothing_left,
+  being_planned,  ///< the reset move is not ready
+  no_way,         ///< no reset move was found: people have to be sent by word of mouth
+  reset_runs,
+  nothing_runs,
+  at_the_top,
+  no_reset,  ///< none is asked for
+  empty_range,
+};
+/// For whoever pressed: "the cue runs".
+[[nodiscard]] std::string_view to_text(Outcome outcome);
+[[nodiscard]] constexpr bool refused(Outcome outcome) { return outcome >= Outcome::too_soon; }
+
+/// The cue engine in rehearsal: holds, jumps, loops, tempo.
+///
+/// What is lit is a function of the position, and the position only goes on with the clock; but people are not lamps.
+/// Whatever wants another position (BACK, a jump, the end of a loop) asks for a *reset move*, a walk from where people
+/// are assumed to stand to where they must be. Somebody else plans it and says `reset_planned`; the operator's GO says
+/// that people stand where they are assumed, and lights it; when it is over the show stands at its new place. Nothing
+/// else moves the position, but `placed`, by which the operator answers for where people are.
+///
+/// GO, going on and the way back begin with a count-in of so many counts. Pure stepping; `step` and `apply` neither
+/// allocate, lock nor throw. Borrows the engine. One thread.
+class Rehearsal {
+ public:
+  enum class Phase : std::uint8_t { stands, counts_in, runs, resets, reset_held, finished };
+  enum class ResetState : std::uint8_t { none, wanted, ready, impossible };
+  struct Reset {
+    ResetState state = ResetState::none;
+    std::uint32_t id = 0;
+    Instant from{};  ///< where people will stand when it begins
+    Instant to{};
+  };
+  struct Loop {
+    Instant from{};
+    Instant to{};
+  };
+  struct Settings {
+    double count_in_counts = 4;
+    Duration least_between_gos = milliseconds(1000);
+  };
+  /// How long before a switch all buses have to know of it. @param from what is lit before
+  using Notice = std::function<Duration(std::size_t from, std::size_t to)>;
+
+  Rehearsal(CueEngine& engine, TempoMap tempo, Stands stands, Settings settings, Notice notice);
+
+  /// Lets everything up to and including `now` happen. `now` never goes back.
+  void step(Instant now) noexcept;
+  /// O(log switches) and one `notice`.
+  Outcome apply(const Command& command, Instant now) noexcept;
+
+  /// As of the last step or command.
+  [[nodiscard]] BusTarget target() const noexcept;
+  /// Clock time of the next thing that happens by itself; kNever while the show waits.
+  [[nodiscard]] Instant next_event() const noexcept;
+  [[nodiscard]] Phase phase() const noexcept;
+  [[nodiscard]] const Reset& reset() const noexcept { return reset_; }
+  [[nodiscard]] const std::optional<Loop>& loop() const noexcept { return loop_; }
+  [[nodiscard]] bool holds_at_end() const noexcept { return hold_.has_value(); }
+  /// Clock time at which the count-in ends; kNever without one.
+  [[nodiscard]] Instant goes_at() const noexcept;
+  [[nodiscard]] const CueEngine& engine() const noexcept { return engine_; }
+
+ private:
+  Outcome go(GoSource source, Instant now) noexcept;
+  Outcome go_on(Instant now) noexcept;
+  Outcome hold(Instant now) noexcept;
+  Outcome hold_at_end(Instant now) noexcept;
+  Outcome back(Instant now) noexcept;
+  Outcome jump(Instant position, Instant now) noexcept;
+  Outcome set_loop(const Command& command, Instant now) noexcept;
+  Outcome step_count(Instant now) noexcept;
+  Outcome placed() noexcept;
+  Outcome cancel() noexcept;
+  Outcome answer_reset(const Command& command) noexcept;
+  Outcome start_reset(Instant now) noexcept;
+  void arrive() noexcept;
+  void aim() noexcept;
+  [[nodiscard]] bool runs() const noexcept { return engine_.active() && !engine_.frozen(); }
+  [[nodiscard]] bool resets() const noexcept { return move_ != nullptr; }
+  [[nodiscard]] bool stands_for_reset() const noexcept;
+  [[nodiscard]] Duration count_in() const noexcept;
+  /// Rows of the reset move that are lit: all but the last.
+  [[nodiscard]] std::size_t rows() const noexcept;
+  [[nodiscard]] Instant row_at(std::size_t row) const noexcept;
+  [[nodiscard]] std::size_t row_switch(std::size_t row) const noexcept;
+
+  CueEngine& engine_;
+  TempoMap tempo_;
+  Stands stands_;
+  Settings settings_;
+  Notice notice_;
+  GoGuard guard_;
+  Instant now_{};
+  std::optional<Instant> hold_;   ///< stop here: end of the set
+  std::optional<Instant> count_;  ///< stop here: one count
+  std::optional<Loop> loop_;
+  Reset reset_;
+  std::uint32_t resets_asked_ = 0;
+  // The reset move that is ready or under way.
+  const ResetMove* planned_ = nullptr;
+  const ResetMove* move_ = nullptr;
+  std::size_t first_ = 0;              ///< its first switch
+  Instant move_at_{};                  ///< clock time at which it begins or began
+  std::size_t rows_lit_ = 0;           ///< of it
+  std::optional<Duration> move_held_;  ///< it stands so far from its beginning
+};
+
+}  // namespace footlight::controller
