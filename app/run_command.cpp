@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/run_command.hpp"
 
-#include <array>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -15,14 +13,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <poll.h>
-#include <unistd.h>
 
 #include "app/commission/wipe_record.hpp"
 #include "app/growing_file.hpp"
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
 #include "app/plan_step.hpp"
+#include "app/prompt/prompt_desk.hpp"
+#include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
 #include "app/wire_log/wire_recorder.hpp"
@@ -39,27 +37,12 @@ struct Options {
   std::string wire_log;
   std::string state;
   bool go = false;
-};
+  bool status_lines = false;
+  std::optional<double> count_in_counts;
+  double go_guard_s = 1;
 
-/// GO by the Enter key, or by a line of whoever writes to stdin.
-class EnterKey {
- public:
-  int presses() {
-    int lines = 0;
-    std::array<char, 256> buffer{};
-    pollfd file{STDIN_FILENO, POLLIN, 0};
-    while (!closed_ && ::poll(&file, 1, 0) > 0) {
-      const ssize_t count = ::read(STDIN_FILENO, buffer.data(), buffer.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) closed_ = true;
-      for (ssize_t i = 0; i < count; ++i) lines += buffer[static_cast<std::size_t>(i)] == '\n' ? 1 : 0;
-    }
-    return lines;
-  }
-  [[nodiscard]] bool closed() const { return closed_; }
-
- private:
-  bool closed_ = false;
+  /// Nobody has to be counted in where GO presses itself.
+  [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
 };
 
 Status<> find_buses(const Options& options, Rig& rig) {
@@ -127,37 +110,52 @@ class Traces {
   std::ofstream moments_;
 };
 
+void tell_limits(Session& session, const Show& show, const Plan& plan,
+                 const std::vector<controller::TempoLimit>& limits) {
+  const auto plays = controller::cue_plays(show, plan);
+  for (std::size_t c = 0; c < limits.size(); ++c) {
+    if (limits[c].because.empty()) continue;
+    session.note(fmt::format("cue {}: tempo at most {} %: {}", plays[c].cue.number.to_text(), limits[c].percent,
+                             limits[c].because));
+  }
+}
+
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log) {
-  EnterKey enter;
+  const Show& show = planned.loaded.show;
+  PromptDesk desk(session, show, planned.plan(), options.status_lines, !options.go);
   LiveOptions live;
   live.go = options.go;
+  live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
   live.stop = session.stop();
   live.wire_log = wire_log;
-  bool waits_for_nobody = false;
-  live.presses = [&] {
-    const int presses = options.go ? 0 : enter.presses();
-    if (enter.closed() && !waits_for_nobody) {
-      waits_for_nobody = true;
-      session.note("stdin is closed: nobody can press GO any more (--go presses it; SIGINT ends)");
-    }
-    return presses;
+  live.desk = [&](const DeskView& view) { return desk.look(view); };
+  live.answered = [&](const Answer& answer) { desk.answered(answer); };
+  live.wait = [&](Duration most) { desk.wait(most); };
+  live.reset = [&](const std::string& line) {
+    traces.moment(line);
+    desk.tell("reset", line);
+  };
+  live.plan_way = [&](Instant from, Instant to, const std::atomic<bool>& abandoned) {
+    return plan_reset_way(show, planned.plan(), from, to, std::max(1.0, options.count_in()), abandoned);
+  };
+  live.limits = [&](const std::vector<controller::TempoLimit>& limits) {
+    tell_limits(session, show, planned.plan(), limits);
   };
   live.ready = [&](std::size_t unconfirmed) {
     session.note(unconfirmed == 0 ? "every node shows the opening"
                                   : nodes_text(unconfirmed) + " of the rig not confirmed to show the opening");
-    if (!options.go) session.note("Enter is GO");
   };
-  live.progress = [&](double share, std::size_t unconfirmed) {
+  const bool keys = !options.go && RawTerminal::there();
+  live.progress = [&, keys](double share, std::size_t unconfirmed) {
+    if (keys) return;  // the desk has the line
     session.tell(unconfirmed == 0 ? "show" : "show, " + nodes_text(unconfirmed) + " not right,", share);
   };
   live.moment = [&](const std::string& line) {
     traces.moment(line);
-    if (session.json) return;
-    session.clear_line();
-    session.print_now(line);
+    desk.tell("moment", line);
   };
-  auto report = live_run(planned.loaded.show, planned.plan(), rig, ports, live);
+  auto report = live_run(show, planned.plan(), rig, ports, live);
   session.clear_line();
   return report;
 }
@@ -199,7 +197,12 @@ int run(Session& session, const Options& options) {
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));
-  session.print(session.json ? live_json(*report, rig) : live_text(*report));
+  if (options.status_lines) {
+    session.print_now(
+        nlohmann::ordered_json{{"report", nlohmann::ordered_json::parse(live_json(*report, rig))}}.dump());
+  } else {
+    session.print(session.json ? live_json(*report, rig) : live_text(*report));
+  }
   if (report->unconfirmed > 0) return session.fail(device_error(live_failure(*report)));
   return 0;
 }
@@ -213,16 +216,28 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--transport-map", options->transports,
                       "YAML file: where buses are here and today, instead of where the rig says");
   command->add_flag("--go", options->go, "press GO when all nodes have answered, and whenever the show waits");
+  command
+      ->add_option("--count-in", options->count_in_counts,
+                   "counts before each GO takes effect, a hold is left and a reset move begins (4; with --go 0)")
+      ->check(CLI::Range(0.0, 64.0));
+  command->add_option("--go-guard", options->go_guard_s, "least time between two GOs, s")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  command->add_flag("--status-lines", options->status_lines,
+                    "every line on stdout is a JSON document: state, answer, moment, reset, and the report at last");
   command->add_option("--wire-log", options->wire_log,
                       "write all that goes over the wires to this pcapng file, for Wireshark");
   command->add_option("--state", options->state, "folder for the last ten minutes of every wire and what the run said")
       ->default_str("~/.local/state/footlight");
   session.add_options(*command, true);
   command->footer(
-      "Enter is GO. At first the look table is uploaded, every node asked and the opening lit. A plan that is refused\n"
-      "never reaches a marker. At the end every node has to have confirmed what it shows: exit status 4 when one has\n"
-      "not, or when a bus cannot be opened. SIGINT ends it and makes no lamp dark: markers hold, then lose "
-      "guidance.\n\n"
+      "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"
+      "lines, \"help\" lists them, and an empty line is GO. HOLD IS NO EMERGENCY STOP: somebody must watch the stage.\n"
+      "BACK, a jump and the end of a loop first light a planned way for everybody, confirmed by GO.\n\n"
+      "At first the look table is uploaded, every node asked and the opening lit. A plan that is refused never "
+      "reaches\n"
+      "a marker. At the end every node has to have confirmed what it shows: exit status 4 when one has not, or when a\n"
+      "bus cannot be opened. SIGINT ends it and makes no lamp dark: markers hold, then lose guidance.\n\n"
       "Examples:\n  footlight run show.yaml\n  footlight sim show.yaml --write-map map.yaml &\n"
       "  footlight run show.yaml --transport-map map.yaml --go\n");
   command->callback([&session, &chosen, options] { chosen = [&, options] { return run(session, *options); }; });

@@ -7,7 +7,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "app/prompt/raw_terminal.hpp"
 
 namespace footlight::app {
 namespace {
@@ -16,6 +19,7 @@ std::atomic<bool> stop_flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
 extern "C" void on_signal(int signal) {
+  restore_terminal();
   stop_flag.store(true, std::memory_order_relaxed);
   std::signal(signal, SIG_DFL);
 }
@@ -88,6 +92,7 @@ int Session::fail(const Error& error) {
 void Session::end_now(const Error& error) {
   const int status = fail(error);
   std::fflush(nullptr);
+  restore_terminal();
   _exit(status);
 }
 
@@ -114,6 +119,18 @@ void Session::tell(std::string_view stage, double share) {
   write(stderr, plain_progress ? text + "\n" : "\r\x1B[K" + text);
   std::fflush(stderr);
   line_open_ = !plain_progress;
+}
+
+void Session::show_line(std::string_view text) {
+  winsize size{};
+  if (quiet || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0) return;
+  const std::size_t width = size.ws_col == 0 ? text.size() : size.ws_col - 1U;  // 0: it does not say
+  if (text == last_told_ && line_open_) return;
+  last_told_ = text;
+  write(stderr, "\r\x1B[K");
+  write(stderr, text.substr(0, width));
+  std::fflush(stderr);
+  line_open_ = true;
 }
 
 void Session::clear_line() {

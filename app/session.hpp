@@ -53,6 +53,8 @@ class Session {
   void time_stages(const Clock& clock) { times_.emplace(clock); }
   void enter(std::string_view stage);
   [[nodiscard]] std::optional<StageTimes>& times() { return times_; }
+  /// A line that is overwritten by the next one; as wide as the terminal of stderr, nothing elsewhere.
+  void show_line(std::string_view text);
   /// Takes the progress line away.
   void clear_line();
 

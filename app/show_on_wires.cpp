@@ -56,7 +56,7 @@ Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& 
   return out;
 }
 
-bool GoWhenWaiting::step(controller::CueEngine& engine, Instant now) noexcept {
+bool GoWhenWaiting::due(const controller::CueEngine& engine, Instant now) noexcept {
   if (engine.finished() || engine.active()) {
     at_ = kNever;
     return false;
@@ -64,7 +64,11 @@ bool GoWhenWaiting::step(controller::CueEngine& engine, Instant now) noexcept {
   if (at_ == kNever) at_ = now + controller::kShortestHold;
   if (now < at_) return false;
   at_ = kNever;
-  return engine.go(now) == controller::GoAnswer::started;
+  return true;
+}
+
+bool GoWhenWaiting::step(controller::CueEngine& engine, Instant now) noexcept {
+  return due(engine, now) && engine.go(now) == controller::GoAnswer::started;
 }
 
 }  // namespace footlight::app

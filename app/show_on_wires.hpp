@@ -41,7 +41,9 @@ class GoWhenWaiting {
  public:
   /// @param first kNever: not yet
   explicit GoWhenWaiting(Instant first = kNever) : at_(first) {}
-  /// @return true when GO has been pressed
+  /// @return true when GO is to be pressed now
+  bool due(const controller::CueEngine& engine, Instant now) noexcept;
+  /// Presses it. @return true when it has
   bool step(controller::CueEngine& engine, Instant now) noexcept;
   /// When it will press, by what is known now.
   [[nodiscard]] Instant next() const noexcept { return at_; }

@@ -76,6 +76,8 @@ class CueSchedule {
   /// Takes a reset move, beside threads that read what is there already. One thread.
   /// @return the number of its first switch, for as long as the schedule lives; nothing when there are too many
   std::optional<std::size_t> add(ResetMove move);
+  /// The move that switch `k` belongs to, k >= switches().size(). Lives as long as the schedule. Any thread.
+  [[nodiscard]] const ResetMove& reset_of(std::size_t k) const;
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
   /// What wearables tell besides their looks; empty unless it was set.
@@ -91,7 +93,6 @@ class CueSchedule {
     std::array<Slot, kMostResets> moves;
     std::atomic<std::size_t> count{0};
   };
-  [[nodiscard]] const ResetMove& reset_of(std::size_t k) const;
 
   std::vector<Look> looks_;
   std::vector<Switch> switches_;

@@ -16,7 +16,7 @@ constexpr Duration kResetLead = milliseconds(300);  // for preloads that have no
 }  // namespace
 
 std::string_view to_text(Outcome outcome) {
-  constexpr std::array<std::string_view, 17> kTexts{
+  constexpr std::array<std::string_view, 18> kTexts{
       "done",
       "the cue starts",
       "the show goes on",
@@ -34,6 +34,7 @@ std::string_view to_text(Outcome outcome) {
       "this is the top of the show",
       "no reset move is asked for",
       "the loop has no length: nobody stands at its beginning before its end",
+      "lost: too many commands at once",
   };
   return kTexts.at(static_cast<std::size_t>(outcome));
 }

@@ -62,6 +62,7 @@ enum class Outcome : std::uint8_t {
   at_the_top,
   no_reset,  ///< none is asked for
   empty_range,
+  lost,  ///< it never reached the rehearsal: there were too many
 };
 /// For whoever pressed: "the cue runs".
 [[nodiscard]] std::string_view to_text(Outcome outcome);

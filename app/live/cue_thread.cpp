@@ -5,14 +5,25 @@
 #include <utility>
 
 namespace footlight::app {
-
-using controller::BusTarget;
-
 namespace {
 
-constexpr Duration kPublish = milliseconds(50);  // it says at least so often that it lives
+using controller::BusTarget;
+using controller::Command;
+
+constexpr Duration kPublish = milliseconds(50);  // the cue thread says at least so often that it lives
+constexpr int kCommandsAtOnce = 8;               // then what is due comes first again
+
+int as_number(const std::optional<std::size_t>& cue) { return cue ? static_cast<int>(*cue) : -1; }
 
 }  // namespace
+
+CueThread::CueThread(ShowOnWires& show, controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock)
+    : show_(show),
+      rehearsal_(rehearsal),
+      target_(target),
+      clock_(clock),
+      waiting_(clock),
+      go_at_(show.plays.size(), kNever) {}
 
 void CueThread::start(std::function<void()> news) {
   news_ = std::move(news);
@@ -27,9 +38,10 @@ void CueThread::stop() {
   thread_.join();
 }
 
-void CueThread::press_go() noexcept {
-  presses_.fetch_add(1, std::memory_order_relaxed);
+bool CueThread::tell(const Command& command) noexcept {
+  const bool taken = commands_.push(command);
   waiting_.wake();
+  return taken;
 }
 
 void CueThread::press_go_whenever_it_waits() noexcept {
@@ -41,33 +53,59 @@ void CueThread::run() noexcept {
   real_time_ = ask_for_real_time();
   while (!stopping_.load(std::memory_order_relaxed)) {
     const Instant now = clock_.now();
-    show_.engine->step(now);
-    press(now);
+    rehearsal_.step(now);
+    take_commands(now);
+    if (by_itself_.load(std::memory_order_relaxed)) press_by_itself(now);
     publish(now);
-    finished_.store(show_.engine->finished(), std::memory_order_relaxed);
-    Instant next = std::min(now + kPublish, show_.engine->next_event());
+    Instant next = std::min(now + kPublish, rehearsal_.next_event());
     if (by_itself_.load(std::memory_order_relaxed)) next = std::min(next, go_.next());
     waiting_.until(next);
   }
 }
 
-void CueThread::press(Instant now) noexcept {
-  const auto standby = show_.engine->standby();
-  bool pressed = false;
-  if (presses_.exchange(0, std::memory_order_relaxed) > 0) {  // several at once are one
-    pressed = show_.engine->go(now) == controller::GoAnswer::started;
-  } else if (by_itself_.load(std::memory_order_relaxed)) {
-    if (!told_) go_ = GoWhenWaiting(now);
-    told_ = true;
-    pressed = go_.step(*show_.engine, now);
+void CueThread::take_commands(Instant now) noexcept {
+  for (int i = 0; i < kCommandsAtOnce; ++i) {
+    const auto command = commands_.pop();
+    if (!command) return;
+    carry_out(*command, now);
   }
-  if (pressed && standby) go_at_[*standby] = now;
+  waiting_.wake();  // there may be more
+}
+
+void CueThread::carry_out(const Command& command, Instant now) noexcept {
+  const auto standby = rehearsal_.engine().standby();
+  const controller::Outcome outcome = rehearsal_.apply(command, now);
+  if (outcome == controller::Outcome::cue_started && standby) go_at_[*standby] = now;
+  (void)answers_.push({command, outcome, now});  // full: nobody listens
+}
+
+void CueThread::press_by_itself(Instant now) noexcept {
+  if (!told_) go_ = GoWhenWaiting(now);
+  told_ = true;
+  if (go_.due(rehearsal_.engine(), now)) carry_out(Command{}, now);
 }
 
 void CueThread::publish(Instant now) noexcept {
-  const BusTarget target = show_.engine->target();
+  const BusTarget target = rehearsal_.target();
   target_.publish(target, now);
-  const bool news = target.current != last_.current || target.next_at != last_.next_at;
+  const controller::CueEngine& engine = rehearsal_.engine();
+  ShowState state;
+  state.phase = rehearsal_.phase();
+  state.reset = rehearsal_.reset();
+  state.loops = rehearsal_.loop().has_value();
+  state.loop = rehearsal_.loop().value_or(controller::Rehearsal::Loop{});
+  state.holds_at_end = rehearsal_.holds_at_end();
+  state.percent = engine.percent();
+  state.limit_percent = engine.limit_percent();
+  state.active = as_number(engine.active());
+  state.standby = as_number(engine.standby());
+  state.position = engine.position();
+  state.goes_at = rehearsal_.goes_at();
+  if (engine.active()) state.ends_at = engine.clock_at(engine.plays()[*engine.active()].to);
+  state.at = now;
+  state.target = target;
+  state_.write(state);
+  const bool news = target.current != last_.current || target.next != last_.next || target.next_at != last_.next_at;
   last_ = target;
   if (news) news_();
 }

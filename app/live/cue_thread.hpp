@@ -3,23 +3,50 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "app/live/seqlock.hpp"
 #include "app/live/shared_target.hpp"
+#include "app/live/spsc_ring.hpp"
 #include "app/live/waiting.hpp"
 #include "app/show_on_wires.hpp"
-#include "controller/bus_loop.hpp"
+#include "controller/rehearsal.hpp"
 #include "core/clock.hpp"
 
 namespace footlight::app {
 
-/// The cue thread: steps the engine at its instants and tells the buses. It owns no port and never waits for a bus.
+/// Where the show stands, for people.
+struct ShowState {
+  controller::Rehearsal::Phase phase = controller::Rehearsal::Phase::stands;
+  controller::Rehearsal::Reset reset{};
+  bool loops = false;
+  controller::Rehearsal::Loop loop{};
+  bool holds_at_end = false;
+  int percent = 100;         ///< tempo
+  int limit_percent = 200;   ///< of this cue
+  int active = -1;           ///< cue that runs, is frozen or waits to run
+  int standby = -1;          ///< cue that the next GO starts
+  Instant position{};        ///< show time
+  Instant goes_at = kNever;  ///< clock time at which a count-in ends
+  Instant ends_at = kNever;  ///< clock time at which the active cue ends
+  Instant at{};              ///< when this was so
+  controller::BusTarget target{};
+};
+
+/// A command and what came of it.
+struct Answer {
+  controller::Command command{};
+  controller::Outcome outcome{};
+  Instant at{};
+};
+
+/// The cue thread: steps the rehearsal at its instants, takes commands and tells the buses. It neither locks,
+/// allocates, logs nor touches a file; a flood of commands costs commands, and no cue.
 class CueThread {
  public:
-  /// Borrows everything.
-  CueThread(ShowOnWires& show, SharedTarget& target, const Clock& clock)
-      : show_(show), target_(target), clock_(clock), waiting_(clock), go_at_(show.plays.size(), kNever) {}
+  CueThread(ShowOnWires& show, controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock);
   ~CueThread() { stop(); }
   CueThread(const CueThread&) = delete;
   CueThread& operator=(const CueThread&) = delete;
@@ -27,33 +54,43 @@ class CueThread {
   /// @param news called when the target has changed; must not block
   void start(std::function<void()> news);
   void stop();
-  void press_go() noexcept;
+
+  // One thread.
+  /// @return false when there are too many: it is lost
+  bool tell(const controller::Command& command) noexcept;
+  std::optional<Answer> answer() noexcept { return answers_.pop(); }
   void press_go_whenever_it_waits() noexcept;
-  [[nodiscard]] bool finished() const noexcept { return finished_.load(std::memory_order_relaxed); }
+
+  // Any thread.
+  [[nodiscard]] ShowState state() const noexcept { return state_.read(); }
   // After `stop`.
-  /// By cue; kNever: no GO.
+  /// Clock time of the last GO that started each cue; kNever: none did.
   [[nodiscard]] const std::vector<Instant>& go_at() const { return go_at_; }
   [[nodiscard]] bool real_time() const { return real_time_; }
 
  private:
   void run() noexcept;
-  void press(Instant now) noexcept;
+  void take_commands(Instant now) noexcept;
+  void carry_out(const controller::Command& command, Instant now) noexcept;
+  void press_by_itself(Instant now) noexcept;
   void publish(Instant now) noexcept;
 
   ShowOnWires& show_;
+  controller::Rehearsal& rehearsal_;
   SharedTarget& target_;
   const Clock& clock_;
   Waiting waiting_;
   std::function<void()> news_;
+  SpscRing<controller::Command, 64> commands_;
+  SpscRing<Answer, 256> answers_;
+  SeqLock<ShowState> state_;
   std::atomic<bool> stopping_{false};
-  std::atomic<bool> finished_{false};
   std::atomic<bool> by_itself_{false};
-  std::atomic<int> presses_{0};
   GoWhenWaiting go_;
   bool told_ = false;
   bool real_time_ = false;
   controller::BusTarget last_;
-  std::vector<Instant> go_at_;
+  std::vector<Instant> go_at_;  ///< by cue
   std::thread thread_;
 };
 

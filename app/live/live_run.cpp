@@ -13,10 +13,15 @@
 #include "app/live/bare_timer.hpp"
 #include "app/live/bus_thread.hpp"
 #include "app/live/cue_thread.hpp"
+#include "app/live/reset_moves.hpp"
 #include "app/live/shared_target.hpp"
 #include "app/show_on_wires.hpp"
 #include "app/wire_log/logged_ports.hpp"
+#include "controller/bus_budget.hpp"
 #include "controller/lateness.hpp"
+#include "controller/rehearsal.hpp"
+#include "controller/stands.hpp"
+#include "controller/tempo_limit.hpp"
 #include "core/clock.hpp"
 
 namespace footlight::app {
@@ -37,9 +42,16 @@ LatenessReport report_of(const Lateness& lateness) {
 /// One run: the threads, and what the calling thread sees of them.
 class LiveRun {
  public:
-  LiveRun(const Show& show, const Rig& rig, ShowOnWires& wires, const std::vector<drivers::Port>& ports,
-          const LiveOptions& options)
-      : show_(show), rig_(rig), wires_(wires), options_(options), cue_(wires, target_, clock_) {
+  LiveRun(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires,
+          const std::vector<drivers::Port>& ports, const LiveOptions& options)
+      : show_(show),
+        rig_(rig),
+        wires_(wires),
+        options_(options),
+        rehearsal_(*wires.engine, show.tempo, controller::Stands(plan), options.rehearsal,
+                   [this](std::size_t from, std::size_t to) { return notice(from, to); }),
+        cue_(wires, rehearsal_, target_, clock_),
+        resets_(show, rig, *wires.schedule, options.plan_way) {
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
       ports_.push_back(drivers::reference(ports[b]));
       auto handle = [port = ports_.back()] {
@@ -47,6 +59,8 @@ class LiveRun {
       };
       threads_.push_back(std::make_unique<BusThread>(*wires.loops[b], std::move(handle), target_, clock_,
                                                      wires.schedule->switches().size()));
+      const auto nodes = static_cast<std::size_t>(std::ranges::count(rig.nodes, BusIndex::of(b), &Node::bus));
+      buses_.push_back({rig.buses[b].name, nodes, nodes});
     }
   }
 
@@ -64,8 +78,18 @@ class LiveRun {
   [[nodiscard]] bool settled() const {
     return std::ranges::all_of(threads_, [](const auto& bus) { return bus->settled(); });
   }
+  [[nodiscard]] Duration notice(std::size_t from, std::size_t to) const noexcept {
+    Duration notice{};
+    for (const auto& loop : wires_.loops) notice = std::max(notice, loop->notice(from, to));
+    return notice;
+  }
+  void wait() const;
   void look_on();
+  void listen_to_the_desk();
+  void tell(const controller::Command& command);
+  [[nodiscard]] bool over() const;
   void call_the_roll();
+  [[nodiscard]] const controller::Switch& switch_of(std::size_t k) const;
   void say_moment(const BusTarget& target);
   LiveReport report(const BareTimer& bare, Duration run);
   LiveBusReport report_bus(std::size_t b, Duration run) const;
@@ -80,11 +104,17 @@ class LiveRun {
   const LiveOptions& options_;
   SteadyClock clock_;
   SharedTarget target_;
+  controller::Rehearsal rehearsal_;
   CueThread cue_;
+  ResetMoves resets_;
   std::vector<std::unique_ptr<BusThread>> threads_;
   Lateness wake_;
   bool roll_called_ = false;
   std::size_t told_ = 0;
+  ShowState state_;
+  std::vector<BusView> buses_;
+  bool ended_ = false;  ///< by the desk
+  bool nobody_ = true;  ///< is left at the desk
 };
 
 Result<LiveReport> LiveRun::play() {
@@ -95,10 +125,13 @@ Result<LiveReport> LiveRun::play() {
   });
   for (const auto& bus : threads_) bus->start();
   Instant ends_at = kNever;
-  while (!stopped() && clock_.now() < ends_at) {
-    std::this_thread::sleep_for(kLookOn);
+  while (!stopped() && !ended_ && clock_.now() < ends_at) {
+    wait();
     look_on();
-    if (!cue_.finished()) continue;
+    if (!over()) {
+      ends_at = kNever;
+      continue;
+    }
     if (ends_at == kNever) ends_at = clock_.now() + kPostRoll;
     if (unconfirmed() == 0 && settled()) break;
   }
@@ -111,15 +144,50 @@ Result<LiveReport> LiveRun::play() {
   return report(bare, run);
 }
 
+void LiveRun::wait() const {
+  if (options_.wait) return options_.wait(kLookOn);
+  std::this_thread::sleep_for(kLookOn);
+}
+
+/// Nobody can want anything of the show any more.
+bool LiveRun::over() const {
+  return nobody_ && state_.phase == controller::Rehearsal::Phase::finished &&
+         state_.reset.state == controller::Rehearsal::ResetState::none;
+}
+
 void LiveRun::look_on() {
   if (!roll_called_) call_the_roll();
-  if (options_.presses && options_.presses() > 0) cue_.press_go();
+  state_ = cue_.state();
+  listen_to_the_desk();
+  if (const auto news = resets_.look(state_.reset)) {
+    tell(news->command);
+    if (options_.reset) options_.reset(news->text);
+  }
+  while (const auto answer = cue_.answer()) {
+    if (options_.answered) options_.answered(*answer);
+  }
   const BusTarget target = target_.read().target;
   say_moment(target);
   if (!options_.progress) return;
   const Duration from = wires_.plays.front().from.time_since_epoch();
   const Duration to = wires_.plays.back().to.time_since_epoch();
-  options_.progress(to_seconds(target.show_time - from) / std::max(1e-9, to_seconds(to - from)), unconfirmed());
+  const Duration position = state_.position.time_since_epoch();
+  options_.progress(to_seconds(position - from) / std::max(1e-9, to_seconds(to - from)), unconfirmed());
+}
+
+void LiveRun::listen_to_the_desk() {
+  if (!options_.desk) return;
+  for (std::size_t b = 0; b < buses_.size(); ++b) buses_[b].unconfirmed = threads_[b]->unconfirmed();
+  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_});
+  for (const controller::Command& command : wishes.commands) tell(command);
+  ended_ = wishes.ends;
+  nobody_ = wishes.nobody;
+}
+
+void LiveRun::tell(const controller::Command& command) {
+  if (!cue_.tell(command) && options_.answered) {
+    options_.answered({command, controller::Outcome::lost, clock_.now()});
+  }
 }
 
 void LiveRun::call_the_roll() {
@@ -129,12 +197,26 @@ void LiveRun::call_the_roll() {
   if (options_.go) cue_.press_go_whenever_it_waits();
 }
 
+const controller::Switch& LiveRun::switch_of(std::size_t k) const {
+  const auto& switches = wires_.schedule->switches();
+  if (k < switches.size()) return switches[k];
+  return wires_.schedule->reset_of(k).switches[(k - switches.size()) % controller::CueSchedule::kMostResetSwitches];
+}
+
 void LiveRun::say_moment(const BusTarget& target) {
-  while (options_.moment && told_ < target.current) {
-    const controller::Switch& now = wires_.schedule->switches()[++told_];
-    const std::string cue = now.cue ? wires_.plays[*now.cue].cue.number.to_text() : "-";
-    options_.moment(fmt::format("{:10.3f} s  cue {:<6} {:>8}  {}", to_seconds(now.time), cue,
-                                show_.tempo.measure_beat(show_.tempo.count_at(now.time)), now.cause));
+  if (target.current == told_) return;
+  const auto& switches = wires_.schedule->switches();
+  // What was passed since the last look is told, too; a reset move and a jump are places of their own.
+  const bool on = told_ < target.current && target.current < switches.size();
+  std::size_t k = on ? told_ + 1 : target.current;
+  told_ = target.current;
+  for (; options_.moment && k <= target.current; ++k) {
+    const controller::Switch& now = switch_of(k);
+    const bool reset = k >= switches.size();
+    const std::string cue = now.cue && !reset ? "cue " + wires_.plays[*now.cue].cue.number.to_text() : "";
+    const std::string measure = reset ? "" : show_.tempo.measure_beat(show_.tempo.count_at(now.time));
+    options_.moment(
+        fmt::format("{:10.3f} s  {:<10} {:>8}  {}", to_seconds(now.time), reset ? "reset" : cue, measure, now.cause));
   }
 }
 
@@ -223,11 +305,24 @@ void LiveRun::report_cues(LiveReport& report) const {
 }
 
 void LiveRun::report_floor(LiveReport& report) const {
+  const std::size_t lit = target_.read().target.current;
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
-    const auto looks = wires_.schedule->looks_of(report.switches - 1, NodeIndex::of(n));
+    const auto looks = wires_.schedule->looks_of(lit, NodeIndex::of(n));
     report.floor.emplace_back(looks.begin(),
                               looks.begin() + static_cast<std::ptrdiff_t>(rig_.nodes[n].channels.size()));
   }
+}
+
+void limit_tempo(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires, const LiveOptions& options) {
+  std::vector<Duration> gaps;
+  for (const controller::CuePlay& play : wires.plays)
+    gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
+  const auto limits = controller::tempo_limits(plan, show.tempo, wires.plays, *wires.schedule,
+                                               controller::bus_needs(*wires.schedule, rig, wires.drivers, gaps), rig);
+  std::vector<int> percent;
+  for (const controller::TempoLimit& limit : limits) percent.push_back(limit.percent);
+  wires.engine->set_limits(std::move(percent));
+  if (options.limits) options.limits(limits);
 }
 
 }  // namespace
@@ -247,7 +342,8 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
   }
   auto wires = put_on_wires(show, plan, rig, std::move(drivers));
   if (!wires) return std::move(wires).error();
-  return LiveRun(show, rig, **wires, ports, options).play();
+  limit_tempo(show, plan, rig, **wires, options);
+  return LiveRun(show, plan, rig, **wires, ports, options).play();
 }
 
 }  // namespace footlight::app

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "app/bus_figures.hpp"
+#include "app/live/cue_thread.hpp"
+#include "app/live/reset_moves.hpp"
 #include "app/wire_log/wire_log.hpp"
+#include "controller/tempo_limit.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
 #include "core/rig.hpp"
@@ -60,14 +63,45 @@ struct LiveReport {
   LatenessReport bare;            ///< of a thread that does nothing but sleep, in the same run
   std::vector<LiveCueReport> cues;
   std::vector<LiveBusReport> buses;
-  std::vector<std::vector<LookIndex>> floor;  ///< what every node should show at the end, by node of the rig
+  std::vector<std::vector<LookIndex>> floor;  ///< what every node should show when the run ends, by node of the rig
+};
+
+/// How one bus is, while it runs.
+struct BusView {
+  std::string_view name;
+  std::size_t nodes = 0;
+  std::size_t unconfirmed = 0;
+};
+
+/// What the desk sees.
+struct DeskView {
+  ShowState show;
+  bool roll_called = false;
+  std::vector<BusView> buses;
+};
+
+/// What the desk wants.
+struct DeskWishes {
+  std::vector<controller::Command> commands{};
+  bool ends = false;    ///< the run
+  bool nobody = false;  ///< is left to want anything
 };
 
 struct LiveOptions {
   /// True: GO as soon as the roll call is over, and again whenever the show has stood for the shortest stand.
   bool go = false;
-  /// Asked again and again by the calling thread: GO presses since the last time.
-  std::function<int()> presses;
+  controller::Rehearsal::Settings rehearsal{};
+  /// The desk, asked again and again by the calling thread; none: the run ends with the show.
+  std::function<DeskWishes(const DeskView&)> desk;
+  /// What came of each command, in their order.
+  std::function<void(const Answer&)> answered;
+  /// A way back was planned, or could not be.
+  std::function<void(const std::string& line)> reset;
+  /// Before the first byte: the fastest tempo of each cue.
+  std::function<void(const std::vector<controller::TempoLimit>&)> limits;
+  ResetMoves::PlanWay plan_way;
+  /// Waits for the desk, at most so long; none: the calling thread sleeps.
+  std::function<void(Duration)> wait;
   const std::atomic<bool>* stop = nullptr;
   /// Of show time, with the nodes that are not right now.
   std::function<void(double share, std::size_t unconfirmed)> progress;

@@ -21,6 +21,7 @@ import unittest
 import devices
 import live
 import ola
+import rehearse
 import stage
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -88,6 +89,7 @@ Stage = stage.make_stage(Case, footlight, lambda: PROGRAM)
 Live = live.make_cases(Stage, footlight, lambda: PROGRAM)
 Devices = devices.make_cases(Stage, footlight)
 Ola = ola.make_cases(Stage)
+Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 
 
 class Docs(Case):

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/live_run.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controller/stands.hpp"
 #include "sim/endpoints/served_rig.hpp"
+#include "tests/support/plan_builder.hpp"
 #include "tests/support/small_show.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -93,6 +96,67 @@ TEST_F(LiveRunTest, WithoutGoTheOpeningStandsAndStopEndsIt) {
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().kind, ErrorKind::interrupted);
   EXPECT_EQ(unconfirmed, 0U);
+}
+
+TEST_F(LiveRunTest, AfterAHoldAndTheWayBackEveryMarkerShowsTheOpeningAgain) {
+  using Kind = controller::Command::Kind;
+  using Phase = controller::Rehearsal::Phase;
+  const auto ports = open();
+  LiveOptions options;
+  options.rehearsal = {0, milliseconds(1)};
+  std::vector<std::string> resets;
+  options.reset = [&](const std::string& line) { resets.push_back(line); };
+  options.plan_way = [&](Instant from, Instant to, const std::atomic<bool>&) -> Result<Plan> {
+    const auto cells = controller::cells_at(small_.plan, from);
+    const auto goals = controller::cells_at(small_.plan, to);
+    std::vector<std::vector<Mark>> tracks;
+    for (std::size_t p = 0; p < cells.size(); ++p) {
+      tracks.push_back({{kStart, cells[p]}, {instant_at(0.5), cells[p]}, {instant_at(1), goals[p]}});
+    }
+    Plan way = tests::plan_of(small_.plan.stage.grid, std::move(tracks));
+    way.sections = {{"start", kStart, kStart, 9, {}, {}, {}}, {"places", instant_at(1), instant_at(1), 9, {}, {}, {}}};
+    way.valid = true;
+    return way;
+  };
+  // What an operator does when she sees that.
+  int stage = 0;
+  options.desk = [&](const DeskView& view) {
+    const auto command = [&](Kind kind) {
+      ++stage;
+      DeskWishes wishes;
+      wishes.commands.emplace_back().kind = kind;
+      return wishes;
+    };
+    const ShowState& show = view.show;
+    const bool ready = show.reset.state == controller::Rehearsal::ResetState::ready;
+    if (stage == 0 && view.roll_called) return command(Kind::go);
+    if (stage == 1 && show.position > instant_at(0.5)) return command(Kind::hold);
+    if (stage == 2 && show.phase == Phase::stands) return command(Kind::back);
+    if (stage == 3 && ready) return command(Kind::go);
+    if (stage == 4 && show.phase == Phase::stands && show.position == instant_at(2)) return command(Kind::go);
+    DeskWishes wishes;
+    wishes.ends = stage == 5 && show.phase == Phase::stands && show.position == kStart && show.reset.id == 0 &&
+                  std::ranges::all_of(view.buses, [](const BusView& bus) { return bus.unconfirmed == 0; });
+    return wishes;
+  };
+  std::vector<controller::Outcome> outcomes;
+  options.answered = [&](const Answer& answer) { outcomes.push_back(answer.outcome); };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_TRUE(report) << report.error().message;
+  using controller::Outcome;
+  EXPECT_THAT(outcomes, testing::ElementsAre(Outcome::cue_started, Outcome::done, Outcome::done, Outcome::done,
+                                             Outcome::walks_on, Outcome::reset_started));
+  EXPECT_EQ(resets.size(), 1U);
+  EXPECT_EQ(report->unconfirmed, 0U);
+  stop_serving();
+  std::size_t lit = 0;
+  for (std::size_t n = 0; n < small_.rig.nodes.size(); ++n) {
+    for (std::size_t c = 0; c < small_.rig.nodes[n].channels.size(); ++c) {
+      EXPECT_EQ(served_->rig().shown(NodeIndex::of(n), static_cast<int>(c)), report->floor[n][c]) << n << ":" << c;
+      lit += report->floor[n][c] != kDark ? 1 : 0;
+    }
+  }
+  EXPECT_GE(lit, 12U) << "the opening";
 }
 
 TEST_F(LiveRunTest, APlanThatIsNotValidSendsNothing) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "controller/cue_list.hpp"
+#include "controller/rehearsal.hpp"
+#include "core/plan.hpp"
+#include "core/result.hpp"
+#include "core/show.hpp"
+
+namespace footlight::app {
+
+/// What somebody at the desk has said.
+struct Order {
+  enum class Kind { command, help, state, quit };
+  Kind kind = Kind::command;
+  controller::Command command{};
+};
+
+/// Understands a line as `kOrders` explains it; names of cues, sections, counts and times become positions of the show.
+/// Upper case, spaces and a % more do no harm; an empty line is GO. Errors (ErrorKind::input) say what would be right.
+class Orders {
+ public:
+  /// Borrows show and plan.
+  Orders(const Show& show, const Plan& plan);
+  [[nodiscard]] Result<Order> from(std::string_view line) const;
+  [[nodiscard]] const std::vector<controller::CuePlay>& plays() const { return plays_; }
+
+ private:
+  struct Stretch {
+    Instant from;
+    Instant to;
+  };
+  [[nodiscard]] Result<Stretch> stretch(std::string_view verb, const std::vector<std::string>& words) const;
+
+  const Show& show_;
+  const Plan& plan_;
+  std::vector<controller::CuePlay> plays_;
+};
+
+/// For people: every order, a line each.
+extern const std::string_view kOrders;
+
+}  // namespace footlight::app

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/prompt/state_text.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace footlight::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Phase = controller::Rehearsal::Phase;
+using ResetState = controller::Rehearsal::ResetState;
+
+double seconds_left(Instant until, Instant now) { return std::max(0.0, to_seconds(until - now)); }
+
+std::string_view to_text(ResetState state) {
+  switch (state) {
+    case ResetState::none:
+      return "none";
+    case ResetState::wanted:
+      return "being-planned";
+    case ResetState::ready:
+      return "ready";
+    case ResetState::impossible:
+      return "impossible";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string_view StateText::to_text(Phase phase) {
+  switch (phase) {
+    case Phase::stands:
+      return "stands";
+    case Phase::counts_in:
+      return "counts-in";
+    case Phase::runs:
+      return "runs";
+    case Phase::resets:
+      return "resets";
+    case Phase::reset_held:
+      return "reset-held";
+    case Phase::finished:
+      return "finished";
+  }
+  return "";
+}
+
+std::string_view StateText::section_at(Instant position) const {
+  // The walk into a section belongs to it.
+  for (const PlanSection& section : plan_.sections) {
+    if (position <= section.end) return section.name;
+  }
+  return plan_.sections.empty() ? std::string_view() : std::string_view(plan_.sections.back().name);
+}
+
+std::string StateText::cue(int cue) const {
+  const Cue& it = plays_[static_cast<std::size_t>(cue)].cue;
+  return it.number.to_text() + (it.name.empty() ? "" : " " + it.name);
+}
+
+std::string StateText::what_happens(const ShowState& state) const {
+  const auto in = [&](Instant at) { return fmt::format("in {:.1f} s", seconds_left(at, state.at)); };
+  const bool runs = state.phase == Phase::runs || state.phase == Phase::counts_in;
+  if (state.phase == Phase::resets) return state.goes_at != kNever ? "reset move " + in(state.goes_at) : "reset move";
+  if (state.phase == Phase::reset_held) return "HOLD in the reset move: GO goes on";
+  if (!runs && state.reset.state == ResetState::wanted) return "the reset move is being planned";
+  if (!runs && state.reset.state == ResetState::impossible) {
+    return "NO RESET MOVE: send people by word of mouth, then \"placed\"";
+  }
+  if (!runs && state.reset.state == ResetState::ready) {
+    return state.position == state.reset.from ? "GO lights the reset move: are people where they should be?"
+                                              : "GO: people walk on to the end of the set, then the reset move";
+  }
+  if (state.phase == Phase::finished) return "the show is over";
+  const std::string next = state.standby < 0 ? "the end" : cue(state.standby);
+  if (state.phase == Phase::stands) {
+    return state.active >= 0 ? fmt::format("HOLD in cue {}: GO goes on", cue(state.active)) : "GO for cue " + next;
+  }
+  std::string text = "cue " + cue(state.active);
+  if (state.phase == Phase::counts_in) return text + " goes " + in(state.goes_at);
+  const auto& gap = plays_[static_cast<std::size_t>(state.active)].gap_after;
+  text += state.standby < 0 ? " runs, the end "
+          : gap             ? " runs, then by itself " + next + " "
+                            : " runs, GO for " + next + " ";
+  text += in(state.ends_at);
+  if (state.holds_at_end) text += ", HOLD at the end of the set";
+  return text;
+}
+
+std::string StateText::buses(const std::vector<BusView>& buses) const {
+  std::size_t nodes = 0;
+  std::string wrong;
+  for (const BusView& bus : buses) {
+    nodes += bus.nodes;
+    if (bus.unconfirmed == 0) continue;
+    wrong += fmt::format("{}{} {}/{} NOT RIGHT", wrong.empty() ? "" : ", ", bus.name, bus.unconfirmed, bus.nodes);
+  }
+  return wrong.empty() ? fmt::format("all {} nodes right", nodes) : wrong;
+}
+
+std::string StateText::line(const DeskView& view) const {
+  const ShowState& state = view.show;
+  const double count = show_.tempo.count_at(state.position);
+  std::string tempo = fmt::format("{} %", state.percent);
+  if (state.percent == state.limit_percent) tempo += " (at most)";
+  if (state.loops) {
+    tempo +=
+        fmt::format(", loop {:.4g}-{:.4g}", show_.tempo.count_at(state.loop.from), show_.tempo.count_at(state.loop.to));
+  }
+  return fmt::format("{} {} count {:.0f} | {} | {} | {}", section_at(state.position),
+                     show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, what_happens(state),
+                     buses(view.buses));
+}
+
+std::string StateText::json(const DeskView& view) const {
+  const ShowState& state = view.show;
+  const double count = show_.tempo.count_at(state.position);
+  const auto number = [&](int cue) {
+    return cue < 0 ? Json(nullptr) : Json(plays_[static_cast<std::size_t>(cue)].cue.number.to_text());
+  };
+  const auto left = [&](Instant at) { return at == kNever ? Json(nullptr) : Json(seconds_left(at, state.at)); };
+  Json reset{{"state", app::to_text(state.reset.state)}};
+  if (state.reset.state != ResetState::none) {
+    reset["from_s"] = to_seconds(state.reset.from);
+    reset["to_s"] = to_seconds(state.reset.to);
+  }
+  Json buses = Json::array();
+  for (const BusView& bus : view.buses) {
+    buses.push_back({{"name", bus.name}, {"nodes", bus.nodes}, {"unconfirmed", bus.unconfirmed}});
+  }
+  Json loop = nullptr;
+  if (state.loops) loop = {{"from_s", to_seconds(state.loop.from)}, {"to_s", to_seconds(state.loop.to)}};
+  const Json document{{"phase", to_text(state.phase)},
+                      {"position_s", to_seconds(state.position)},
+                      {"section", section_at(state.position)},
+                      {"measure", show_.tempo.measure_beat(std::floor(count))},
+                      {"count", count},
+                      {"cue", number(state.active)},
+                      {"standby", number(state.standby)},
+                      {"goes_in_s", left(state.goes_at)},
+                      {"ends_in_s", left(state.ends_at)},
+                      {"tempo_percent", state.percent},
+                      {"most_percent", state.limit_percent},
+                      {"holds_at_end", state.holds_at_end},
+                      {"loop", std::move(loop)},
+                      {"reset", std::move(reset)},
+                      {"switch", state.target.current},
+                      {"ready", view.roll_called},
+                      {"buses", std::move(buses)}};
+  return Json{{"state", document}}.dump();
+}
+
+}  // namespace footlight::app
