@@ -9,10 +9,11 @@ namespace footlight::app {
 
 BusFigures figures_of(const Rig& rig, BusIndex bus, const controller::BusCounters& counters,
                       const drivers::Driver& driver) {
-  BusFigures figures{counters, {}, {}, {}, 0};
+  BusFigures figures{counters, {}, {}, {}, 0, {}};
   figures.name = rig.buses[bus.at()].name;
   figures.kind = std::string(to_text(rig.buses[bus.at()].kind));
   figures.assumes = driver.assumption();
+  figures.complaints = driver.complaints();
   figures.nodes = static_cast<std::uint64_t>(std::ranges::count(rig.nodes, bus, &Node::bus));
   return figures;
 }
@@ -21,6 +22,7 @@ nlohmann::ordered_json figures_json(const BusFigures& figures) {
   return {{"name", figures.name},
           {"kind", figures.kind},
           {"assumes", figures.assumes},
+          {"complaints", figures.complaints},
           {"nodes", figures.nodes},
           {"deliveries", figures.deliveries},
           {"unverified", figures.unverified},
@@ -33,7 +35,12 @@ nlohmann::ordered_json figures_json(const BusFigures& figures) {
 }
 
 std::string assumption_line(const BusFigures& figures) {
-  return figures.assumes.empty() ? "" : "  unverified on " + figures.name + ": " + figures.assumes + "\n";
+  std::string lines;
+  if (!figures.assumes.empty()) lines = "  unverified on " + figures.name + ": " + figures.assumes + "\n";
+  for (const std::string& complaint : figures.complaints) {
+    lines += "  not used on " + figures.name + ": " + complaint + "\n";
+  }
+  return lines;
 }
 
 }  // namespace footlight::app

@@ -19,6 +19,7 @@ struct BusFigures : controller::BusCounters {
   std::string kind;
   std::string assumes;  ///< what is taken for granted of its devices; empty: they prove what they show
   std::uint64_t nodes = 0;
+  std::vector<std::string> complaints;  ///< why nodes cannot be used, as they have said
 };
 
 [[nodiscard]] BusFigures figures_of(const Rig& rig, BusIndex bus, const controller::BusCounters& counters,
@@ -26,7 +27,7 @@ struct BusFigures : controller::BusCounters {
 /// An object that reports add to.
 [[nodiscard]] nlohmann::ordered_json figures_json(const BusFigures& figures);
 
-/// A line for people where the devices of a bus do not prove what they show; else empty.
+/// Lines for people where the devices of a bus do not prove what they show, or cannot be used; else empty.
 [[nodiscard]] std::string assumption_line(const BusFigures& figures);
 
 }  // namespace footlight::app

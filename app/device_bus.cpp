@@ -9,6 +9,7 @@
 
 #include "app/load.hpp"
 #include "app/simulated_buses.hpp"
+#include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
 #include "config/device_profile.hpp"
 #include "config/nearest.hpp"
@@ -45,9 +46,18 @@ Result<Bus> bus_of_url(const DeviceBusChoice& choice) {
                               : "there is no device profile " + config::in_quotes(choice.profile));
     return bus;
   }
+  if (*kind == BusKind::can && !choice.profile.empty()) {
+    const auto file = config::find_profile(choice.profile, std::filesystem::current_path());
+    Diagnostics diagnostics;
+    if (file) bus.outputs = config::read_output_module(*file, diagnostics);
+    if (!bus.outputs)
+      return input_error(file ? diagnostics.to_text()
+                              : "there is no device profile " + config::in_quotes(choice.profile));
+    return bus;
+  }
   if (*kind != BusKind::modbus_rtu && *kind != BusKind::modbus_tcp) return bus;
   if (choice.profile.empty()) {
-    bus.profile = config::footlight_marker_profile();
+    bus.profile = footlight_marker_profile();
     return bus;
   }
   const auto file = config::find_profile(choice.profile, std::filesystem::current_path());
@@ -112,6 +122,9 @@ Result<std::unique_ptr<DeviceBus>> DeviceBus::open(Session& session, const Devic
     const auto index = bus_named(made->rig_, choice.bus);
     if (!index) return index.error();
     made->index_ = *index;
+  }
+  if (!choice.simulated) {
+    if (auto wire = check_wires(session, {made->bus()}); !wire) return std::move(wire).error();
   }
   if (auto connected = made->connect(choice); !connected) return std::move(connected).error();
   return made;

@@ -15,6 +15,7 @@
 #include "app/machine_wires.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
+#include "app/wire_check.hpp"
 #include "config/nearest.hpp"
 #include "config/quantity.hpp"
 #include "core/clock.hpp"
@@ -95,7 +96,15 @@ int list(Session& session, const Options& options) {
   const std::string show_file = options.show.empty() ? kShowHere : options.show;
   if (const auto changed = wipe_note(state_folder(""), show_file, rig)) session.note(*changed);
   const MachineWires machine = look_at_machine();
-  session.print(session.json ? list_json(rig, assumptions, machine) : list_text(rig, assumptions, machine));
+  std::string text = session.json ? list_json(rig, assumptions, machine) : list_text(rig, assumptions, machine);
+  if (session.json) {
+    session.print(text);
+    return 0;
+  }
+  for (const drivers::Objection& objection : objections_to(rig.buses)) {
+    text += fmt::format("\n{}: {}", objection.stops ? "not ready" : "to be mended", objection.text);
+  }
+  session.print(text);
   return 0;
 }
 

@@ -73,7 +73,7 @@ std::string list_text(const Rig& rig, const std::vector<std::string>& assumption
   std::string text;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const Bus& bus = rig.buses[b];
-    const std::string profile = bus.profile ? " " + bus.profile->name : "";
+    const std::string profile = bus.profile ? " " + bus.profile->name : bus.outputs ? " " + bus.outputs->name : "";
     text += fmt::format("bus {}: {}{} at {}, {} bit/s\n", bus.name, to_text(bus.kind), profile, bus.url,
                         bus.bits_per_second);
     if (!assumptions[b].empty()) text += fmt::format("  unverified: {}\n", assumptions[b]);
@@ -90,6 +90,10 @@ std::string list_json(const Rig& rig, const std::vector<std::string>& assumption
   Json buses = Json::array();
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const Bus& bus = rig.buses[b];
+    Json wire = Json::array();
+    for (const drivers::Objection& objection : drivers::preflight(bus)) {
+      wire.push_back({{"text", objection.text}, {"stops", objection.stops}});
+    }
     Json nodes = Json::array();
     for (const Node& node : rig.nodes) {
       if (node.bus != BusIndex::of(b)) continue;
@@ -102,8 +106,11 @@ std::string list_json(const Rig& rig, const std::vector<std::string>& assumption
                      {"kind", to_text(bus.kind)},
                      {"url", bus.url},
                      {"bits_per_second", bus.bits_per_second},
-                     {"profile", bus.profile ? bus.profile->name : ""},
+                     {"profile", bus.profile   ? bus.profile->name
+                                 : bus.outputs ? bus.outputs->name
+                                               : ""},
                      {"assumes", assumptions[b]},
+                     {"objections", std::move(wire)},
                      {"nodes", std::move(nodes)}});
   }
   return Json{{"buses", std::move(buses)}, {"machine", wires_json(wires, rig)}}.dump(2);

@@ -267,6 +267,7 @@ DryRunReport DryRun::report() {
   report_.confusion_before = wires_->schedule->confusion().before;
   report_.confusion_after = wires_->schedule->confusion().after;
   report_.reboots = simulated_.reboots().size();
+  report_.supplies = supply_figures(*wires_->schedule, rig_, wires_->plays);
   for (const NodeIndex node : simulated_.dead()) report_.dead.push_back(rig_.nodes[node.at()].name);
   for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
     const sim::BusUse use = simulated_.use(BusIndex::of(b));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/bus_figures.hpp"
+#include "app/supply_figures.hpp"
 #include "core/clock.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
@@ -75,6 +76,7 @@ struct DryRunReport {
   std::vector<std::string> dead;  ///< nodes that never answered, by the faults asked for
   std::vector<CueReport> cues;
   std::vector<BusReport> buses;
+  std::vector<SupplyFigures> supplies;  ///< that the rig lists
 };
 
 /// Plays a show with real drivers on simulated buses in virtual time, GO pressed whenever the show waits, and compares

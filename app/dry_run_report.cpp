@@ -54,7 +54,8 @@ std::string dry_run_json(const DryRunReport& report) {
                       {"reboots", report.reboots},
                       {"dead", report.dead},
                       {"cues", std::move(cues)},
-                      {"buses", std::move(buses)}};
+                      {"buses", std::move(buses)},
+                      {"supplies", supplies_json(report.supplies)}};
   return document.dump(2) + "\n";
 }
 
@@ -73,6 +74,7 @@ std::string dry_run_text(const DryRunReport& report) {
                         worst_lateness_ms(bus));
   }
   for (const BusReport& bus : report.buses) text += assumption_line(bus);
+  text += supplies_text(report.supplies);
   text += fmt::format("lamps that could mislead: {} with one pattern for all, {} with patterns\n",
                       report.confusion_before, report.confusion_after);
   if (!report.dead.empty()) {

@@ -33,15 +33,15 @@ struct Options {
 
 constexpr double kStep_s = 1;
 
-/// What every bus has to carry at its hardest switch.
-Result<std::vector<BusLoad>> bus_loads(const Show& show, const Plan& plan, const Rig& rig) {
+/// What every bus has to carry at its hardest switch, and every supply.
+Status<> add_loads(const Show& show, const Plan& plan, const Rig& rig, ReportFacts& facts) {
+  const auto plays = controller::cue_plays(show, plan);
   std::vector<Duration> gaps;
-  for (const auto& play : controller::cue_plays(show, plan)) {
-    gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
-  }
-  std::vector<BusLoad> out;
+  for (const auto& play : plays) gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
+  std::vector<BusLoad>& out = facts.buses;
   for (const Bus& bus : rig.buses) out.push_back({bus.name, 0, 0, 0, 0, ""});
   const auto find_hardest = [&](const SimulatedSchedule& built) {
+    facts.supplies = supply_figures(built.schedule, built.wires, plays);
     for (const controller::BusNeed& need : bus_needs(built.schedule, built.wires, built.drivers, gaps)) {
       BusLoad& bus = out[need.bus.at()];
       const double allowed_s = to_seconds(need.allowed());
@@ -54,8 +54,7 @@ Result<std::vector<BusLoad>> bus_loads(const Show& show, const Plan& plan, const
       bus.cause = built.schedule.switches()[need.k].cause;
     }
   };
-  if (auto built = with_schedule(show, plan, rig, find_hardest); !built) return std::move(built).error();
-  return out;
+  return with_schedule(show, plan, rig, find_hardest);
 }
 
 ReportFacts facts_of(Session& session, const PlannedShow& planned) {
@@ -71,11 +70,9 @@ ReportFacts facts_of(Session& session, const PlannedShow& planned) {
   out.ways = way_figures(plan);
   session.tell("buses", 0);
   if (plan.valid) {
-    auto loads = bus_loads(planned.loaded.show, plan, planned.loaded.rig);
-    if (loads)
-      out.buses = std::move(loads).value();
-    else
-      out.buses_missing = loads.error().message;
+    if (auto added = add_loads(planned.loaded.show, plan, planned.loaded.rig, out); !added) {
+      out.buses_missing = added.error().message;
+    }
     session.tell("dark markers", 0);
     out.dark = controller::find_dark_units(plan, planned.loaded.rig, kDarkKept);
   } else {

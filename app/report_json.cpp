@@ -94,6 +94,7 @@ std::string report_json(const Plan& plan, const Show& show, const ReportFacts& f
                   {"sigma_curr_eft_m", facts.crowd.sigma_effort_m}};
   out["buses"] = buses_of(facts.buses);
   out["buses_missing"] = facts.buses_missing.empty() ? Json() : Json(facts.buses_missing);
+  out["supplies"] = supplies_json(facts.supplies);
   out["dark"] = plan.valid ? Json::parse(dark_json(show, plan, facts.dark)) : Json();
   out["warnings"] = warnings_of(plan, facts.warnings);
   return out.dump(1);

@@ -92,6 +92,7 @@ class Page {
     ways();
     crowd();
     buses();
+    supplies();
     dark();
     warnings();
     return out_ + "</body></html>\n";
@@ -253,6 +254,23 @@ class Page {
     for (const BusLoad& bus : facts_.buses) {
       table.add({bus.bus, share(bus.busiest), fmt::format("{:.0f} ms", 1000 * bus.needed_s),
                  fmt::format("{:.0f} ms", 1000 * bus.allowed_s), std::to_string(bus.changed), bus.cause});
+    }
+    out_ += table.html();
+  }
+
+  void supplies() {
+    if (facts_.supplies.empty()) return;
+    heading(
+        "Power supplies",
+        "What the looks take at the brightest moment of their effects, and on average while the show runs; without a "
+        "controller markers show NO-GUIDANCE by themselves. A cue that asks for more is dimmed by one factor.");
+    Table table({"supply", "limit", "most", "load", "at", "average", "without controller", "nodes", "dimmed"});
+    for (const SupplyFigures& supply : facts_.supplies) {
+      const std::string dimmed = dimmed_text(supply);
+      table.add({supply.name, fmt::format("{:g} A", supply.limit_a), fmt::format("{:.2f} A", supply.peak_a),
+                 share(supply.peak_a / supply.limit_a), peak_text(supply), fmt::format("{:.2f} A", supply.mean_a),
+                 fmt::format("{:.2f} A", supply.unguided_a), std::to_string(supply.nodes),
+                 dimmed.empty() ? "-" : dimmed});
     }
     out_ += table.html();
   }

@@ -6,6 +6,7 @@
 
 #include "app/load.hpp"
 #include "app/show_series.hpp"
+#include "app/supply_figures.hpp"
 #include "controller/dark_nodes.hpp"
 #include "core/diagnostic.hpp"
 #include "core/plan.hpp"
@@ -34,7 +35,8 @@ struct ReportFacts {
   CrowdSeries crowd;
   WayFigures ways;
   std::vector<BusLoad> buses;
-  std::string buses_missing;  ///< why there are no bus loads
+  std::string buses_missing;  ///< why there are no bus loads, nor those of supplies
+  std::vector<SupplyFigures> supplies;
   std::vector<controller::DarkUnit> dark;
   std::vector<Diagnostic> warnings;
 };

@@ -23,6 +23,7 @@
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
+#include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
 #include "config/output_file.hpp"
 #include "config/transport_map.hpp"
@@ -177,6 +178,7 @@ int run(Session& session, const Options& options) {
   Rig rig = planned->loaded.rig;
   if (auto found = find_buses(options, rig); !found) return session.fail(found.error());
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
+  if (auto wires = check_wires(session, rig.buses); !wires) return session.fail(wires.error());
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
   if (const auto changed = wipe_note(state_folder(options.state), options.choice.show, rig)) session.note(*changed);

@@ -48,9 +48,13 @@ Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& 
   out->schedule = std::move(schedule).value();
   for (const auto& driver : out->drivers) out->latch_ahead = std::max(out->latch_ahead, driver->latch_time());
   out->opening = std::max(roll_call(rig), controller::opening_time(*out->schedule, rig, out->drivers));
+  const auto switch_on = controller::switch_on_of(rig);
+  Duration last_turn{};
+  for (const controller::SwitchOn& one : switch_on) last_turn = std::max(last_turn, one.turn);
+  out->opening += last_turn;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     out->loops.push_back(std::make_unique<controller::BusLoop>(
-        *out->schedule, drivers::node_addresses(rig, BusIndex::of(b)), *out->drivers[b]));
+        *out->schedule, drivers::node_addresses(rig, BusIndex::of(b)), *out->drivers[b], switch_on));
   }
   out->engine.emplace(*out->schedule, out->plays, notices_of(*out));
   return out;

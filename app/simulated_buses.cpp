@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "controller/cue_list.hpp"
 #include "core/clock.hpp"
 #include "drivers/registry.hpp"
 
@@ -76,8 +77,13 @@ Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
   return Done{};
 }
 
-Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
-  return with_schedule(show, plan, rig, {});
+Result<std::vector<SupplyFigures>> check_delivery(const Show& show, const Plan& plan, const Rig& rig) {
+  std::vector<SupplyFigures> supplies;
+  const auto add_up = [&](const SimulatedSchedule& built) {
+    supplies = supply_figures(built.schedule, built.wires, controller::cue_plays(show, plan));
+  };
+  if (auto built = with_schedule(show, plan, rig, add_up); !built) return std::move(built).error();
+  return supplies;
 }
 
 }  // namespace footlight::app

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/supply_figures.hpp"
 #include "app/wire_log/logged_ports.hpp"
 #include "controller/cue_schedule.hpp"
 #include "core/plan.hpp"
@@ -41,7 +42,8 @@ struct SimulatedSchedule {
 [[nodiscard]] Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                      const std::function<void(const SimulatedSchedule&)>& use);
 
-/// Whether the lamps of a valid plan can be lit in time: an error where build_schedule has one. Nothing is played.
-[[nodiscard]] Status<> check_delivery(const Show& show, const Plan& plan, const Rig& rig);
+/// Whether the lamps of a valid plan can be lit, in time and by their supplies: an error where build_schedule has one.
+/// Nothing is played. @return what the supplies have to give
+[[nodiscard]] Result<std::vector<SupplyFigures>> check_delivery(const Show& show, const Plan& plan, const Rig& rig);
 
 }  // namespace footlight::app

@@ -8,12 +8,11 @@
 
 #include "config/mapping_reader.hpp"
 #include "config/nearest.hpp"
+#include "config/profile_file.hpp"
 #include "core/time.hpp"
 
 namespace footlight::config {
 namespace {
-
-constexpr std::size_t kMaxProfileBytes = std::size_t{64} << 10U;
 
 std::vector<std::filesystem::path> shipped_folders() {
   std::vector<std::filesystem::path> out;
@@ -29,26 +28,6 @@ std::vector<std::filesystem::path> shipped_folders() {
 }
 
 }  // namespace
-
-ModbusProfile footlight_marker_profile() {
-  ModbusProfile out;
-  out.name = "footlight-marker";
-  out.look_register = 0x0000;
-  out.latch_register = 0x0020;
-  out.heartbeat_register = 0x0030;
-  out.status_register = 0x0040;
-  out.look_table_register = 0x0050;
-  out.unique_id_register = 0x0060;
-  out.identity_register = 0x0062;
-  out.identity_registers = 8;
-  out.identity_is_text = true;
-  out.identify_register = 0x006A;
-  out.readdress_register = 0x006C;
-  out.health = {{"battery", 0x0048, 1, "%", false},
-                {"supply", 0x0049, 0.001, "V", false},
-                {"temperature", 0x004A, 0.1, "C", true}};
-  return out;
-}
 
 std::optional<std::filesystem::path> find_profile(const std::string& name, const std::filesystem::path& folder) {
   std::error_code error;
@@ -266,70 +245,11 @@ class ProfileReader {
 
 }  // namespace
 
-namespace {
-
-/// Reads a file by its listing and `read`; nothing after an error.
-template <class Value, class Read>
-std::optional<Value> read_file(const std::filesystem::path& file, Diagnostics& diagnostics, Read read) {
-  Diagnostics found;
-  Reading reading{file.string(), found};
-  std::optional<Value> value;
-  if (const auto bytes = read_bounded(file, kMaxProfileBytes); !bytes) {
-    found.error({reading.file, 0, 0}, "", bytes.error().message);
-  } else if (auto root = read_root(reading, *bytes, profile_listing())) {
-    value = read(*root);
-  }
-  for (Diagnostic& diagnostic : found.sorted()) diagnostics.add(std::move(diagnostic));
-  if (found.has_errors()) return std::nullopt;
-  return value;
-}
-
-DmxFixture fixture_in(MappingReader& root) {
-  constexpr std::size_t kMostSlots = 32;
-  DmxFixture fixture;
-  (void)root.integer("profile");
-  fixture.name = root.text("name").value_or("");
-  if (!root.has("lamp_slots")) {
-    root.error(root.position(), "lamp_slots", "this is the profile of a Modbus device", "a DMX lamp has lamp_slots");
-    return fixture;
-  }
-  for (const Field& field : profile_listing().fields) {
-    const bool common = field.key == "profile" || field.key == "name" || field.key == "lamp_slots";
-    if (common || !root.has(field.key)) continue;
-    root.error(root.key_position(field.key), root.path(field.key), "the key has no meaning here",
-               "a DMX lamp has a name and lamp_slots");
-  }
-  const auto& known = profile_listing().find("lamp_slots")->choices;
-  for (const Written& written : root.list("lamp_slots")) {
-    const auto at = std::find(known.begin(), known.end(), written.text);
-    if (at == known.end()) {
-      root.error(written, in_quotes(written.text) + " is no kind of slot",
-                 suggestion(written.text, {known.begin(), known.end()}, "kinds"));
-    } else {
-      fixture.slots.push_back(static_cast<DmxSlot>(at - known.begin()));
-    }
-  }
-  if (fixture.slots.empty() || fixture.slots.size() > kMostSlots) {
-    root.error("lamp_slots", "a lamp has " + std::to_string(fixture.slots.size()) + " slots",
-               "1 to " + std::to_string(kMostSlots));
-  }
-  return fixture;
-}
-
-}  // namespace
-
-std::optional<ModbusProfile> read_profile(const std::filesystem::path& file, Diagnostics& diagnostics) {
-  return read_file<ModbusProfile>(file, diagnostics, [](MappingReader& root) {
-    if (root.has("lamp_slots")) {
-      root.error(root.key_position("lamp_slots"), "lamp_slots", "this is the profile of a DMX lamp",
-                 "a Modbus device has look_register or look_coil");
-    }
-    return ProfileReader(root).read();
+std::optional<ModbusProfile> read_profile(const std::filesystem::path& file, Diagnostics& diagnostics,
+                                          std::optional<LampCurrents>* currents) {
+  return read_profile_file<ModbusProfile>(file, diagnostics, currents, [](MappingReader& root) {
+    return is_profile_of(root, DeviceKind::modbus) ? ProfileReader(root).read() : ModbusProfile{};
   });
-}
-
-std::optional<DmxFixture> read_fixture(const std::filesystem::path& file, Diagnostics& diagnostics) {
-  return read_file<DmxFixture>(file, diagnostics, fixture_in);
 }
 
 }  // namespace footlight::config

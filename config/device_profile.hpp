@@ -12,10 +12,18 @@
 namespace footlight::config {
 
 /// Reads drivers/profiles/*.yaml or a file of that kind; nothing after an error.
-[[nodiscard]] std::optional<ModbusProfile> read_profile(const std::filesystem::path& file, Diagnostics& diagnostics);
+/// @param currents takes what its lamps take, where it says so
+[[nodiscard]] std::optional<ModbusProfile> read_profile(const std::filesystem::path& file, Diagnostics& diagnostics,
+                                                        std::optional<LampCurrents>* currents = nullptr);
 
 /// The same for the lamps of a DMX line.
-[[nodiscard]] std::optional<DmxFixture> read_fixture(const std::filesystem::path& file, Diagnostics& diagnostics);
+[[nodiscard]] std::optional<DmxFixture> read_fixture(const std::filesystem::path& file, Diagnostics& diagnostics,
+                                                     std::optional<LampCurrents>* currents = nullptr);
+
+/// The same for the modules of a CANopen bus.
+[[nodiscard]] std::optional<OutputModule> read_output_module(const std::filesystem::path& file,
+                                                             Diagnostics& diagnostics,
+                                                             std::optional<LampCurrents>* currents = nullptr);
 
 /// Where a profile is. A name that ends in .yaml or .yml is a file relative to `folder`; another one is a shipped
 /// profile: in $FOOTLIGHT_DATA/profiles, in ../share/footlight/profiles beside the program, or in the source tree.
@@ -25,8 +33,5 @@ namespace footlight::config {
 
 /// Names of the shipped profiles, sorted.
 [[nodiscard]] std::vector<std::string> shipped_profiles();
-
-/// Our own marker, as drivers/profiles/footlight-marker.yaml has it: for rigs that need no file at all.
-[[nodiscard]] ModbusProfile footlight_marker_profile();
 
 }  // namespace footlight::config

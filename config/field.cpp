@@ -10,7 +10,7 @@ namespace footlight::config {
 namespace {
 
 std::string_view single_name(Type type) {
-  constexpr std::array<std::string_view, 25> kNames{"whole number",
+  constexpr std::array<std::string_view, 26> kNames{"whole number",
                                                     "number",
                                                     "text",
                                                     "true or false",
@@ -34,7 +34,8 @@ std::string_view single_name(Type type) {
                                                     "counts or times of the video",
                                                     "cell -> cell",
                                                     "performer -> cell",
-                                                    "cells or wearable"};
+                                                    "cells or wearable",
+                                                    "current"};
   return kNames.at(static_cast<std::size_t>(type));
 }
 
@@ -47,7 +48,7 @@ const Field* Listing::find(std::string_view key) const {
 
 bool is_quantity(Type type) {
   return type == Type::length || type == Type::speed || type == Type::time || type == Type::area ||
-         type == Type::counts;
+         type == Type::counts || type == Type::current;
 }
 
 Dimension dimension_of(Type type) {
@@ -60,6 +61,8 @@ Dimension dimension_of(Type type) {
       return Dimension::time;
     case Type::area:
       return Dimension::area;
+    case Type::current:
+      return Dimension::current;
     default:
       FL_CHECK(type == Type::counts);
       return Dimension::counts;

@@ -36,6 +36,7 @@ enum class Type {
   move,         ///< "B4 -> C4": cell, cell
   pin,          ///< "17 -> C4": performer, cell
   lamp,         ///< cells, or a mapping as Field::listing
+  current,      ///< a quantity, as length
 };
 
 struct Listing;
@@ -76,5 +77,7 @@ struct Listing {
 [[nodiscard]] const Listing& show_listing();
 [[nodiscard]] const Listing& rig_listing();
 [[nodiscard]] const Listing& profile_listing();
+/// What lamps take, in a rig and in a profile.
+[[nodiscard]] const Listing& currents_listing();
 
 }  // namespace footlight::config

@@ -5,6 +5,7 @@ namespace footlight::config {
 namespace {
 
 const Range kRegister{0, 65'535};
+const Range kNumber{0, 2'147'483'647};
 const std::vector<std::string_view> kEffects{"steady", "blink", "pulse", "double-blink", "count-down"};
 
 const Listing& palette_listing() {
@@ -133,6 +134,23 @@ const Listing& health_listing() {
   return kListing;
 }
 
+const Listing& object_listing() {
+  static const Listing kListing{
+      "objects[]",
+      "An object of a CANopen device, written before the show and read back.",
+      {
+          {.key = "index",
+           .type = Type::integer,
+           .doc = "0x1000 to 0xFFFF.",
+           .required = true,
+           .range = {0x1000, 0xFFFF}},
+          {.key = "sub", .type = Type::integer, .doc = "Sub-index.", .fallback = "0", .range = {0, 255}},
+          {.key = "bits", .type = Type::choice, .doc = "Its size.", .required = true, .choices = {"8", "16", "32"}},
+          {.key = "value", .type = Type::integer, .doc = "What it is to be.", .required = true, .range = kNumber},
+      }};
+  return kListing;
+}
+
 Field at_register(std::string_view key, std::string_view doc, std::string_view otherwise) {
   return {.key = key, .type = Type::integer, .doc = doc, .otherwise = otherwise, .range = kRegister};
 }
@@ -143,8 +161,7 @@ const Listing& profile_listing() {
   static const Listing kListing{
       "drivers/profiles/*.yaml",
       "Where a Modbus device keeps what, numbers of registers and coils from 0, decimal or 0x...; or the slots of a "
-      "DMX "
-      "lamp.",
+      "DMX lamp; or the outputs of a CANopen module (CiA 401).",
       {
           {.key = "profile",
            .type = Type::integer,
@@ -167,6 +184,46 @@ const Listing& profile_listing() {
            .doc = "DMX: what the slots of one lamp are, in their order.",
            .choices = {"dimmer", "red", "green", "blue", "white", "amber", "zero", "full"},
            .list = true},
+          {.key = "outputs",
+           .type = Type::integer,
+           .doc = "CAN: digital outputs, a lamp each, eight to a sub-index of object 0x6200.",
+           .range = {1, 32}},
+          {.key = "on_failure",
+           .type = Type::choice,
+           .doc = "CAN: the outputs when the controller has fallen silent (objects 0x6206 and 0x6207).",
+           .fallback = "dark",
+           .choices = {"dark", "lit", "keep"}},
+          {.key = "heartbeat",
+           .type = Type::time,
+           .doc = "CAN: the module tells so often that it lives (0x1017).",
+           .fallback = "1 s",
+           .range = {0.1, 60}},
+          {.key = "silence",
+           .type = Type::time,
+           .doc = "CAN: so long the controller may be silent (0x1016); it beats every 250 ms.",
+           .fallback = "1 s",
+           .range = {0.5, 60}},
+          {.key = "vendor",
+           .type = Type::integer,
+           .doc = "CAN: in 0x1018:1; another one is refused.",
+           .otherwise = "whoever it is",
+           .range = kNumber},
+          {.key = "product",
+           .type = Type::integer,
+           .doc = "CAN: in 0x1018:2; another one is refused.",
+           .otherwise = "whatever it is",
+           .range = kNumber},
+          {.key = "objects",
+           .type = Type::mapping,
+           .doc = "CAN: what the module needs besides, in this order.",
+           .otherwise = "none",
+           .listing = &object_listing(),
+           .list = true},
+          {.key = "currents",
+           .type = Type::mapping,
+           .doc = "What its lamps take.",
+           .otherwise = "as the rig says",
+           .listing = &currents_listing()},
           {.key = "looks_per_register",
            .type = Type::integer,
            .doc = "With 2 the lower channel stands in the high byte.",
@@ -234,7 +291,7 @@ const Listing& profile_listing() {
            .fallback = "0 s",
            .range = {0, 1}},
       },
-      "look_register look_coil lamp_slots"};
+      "look_register look_coil lamp_slots outputs"};
   return kListing;
 }
 

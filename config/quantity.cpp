@@ -20,6 +20,7 @@ constexpr std::array kSpeeds{Unit{"m/s", 1}, Unit{"km/h", 1 / 3.6}, Unit{"ft/s",
 constexpr std::array kTimes{Unit{"s", 1}, Unit{"ms", 0.001}, Unit{"min", 60}};
 constexpr std::array kAreas{Unit{"m2", 1}, Unit{"m²", 1}, Unit{"ft2", 0.3048 * 0.3048}};
 constexpr std::array kCounts{Unit{"counts", 1}, Unit{"count", 1}};
+constexpr std::array kCurrents{Unit{"A", 1}, Unit{"mA", 0.001}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -33,6 +34,8 @@ std::span<const Unit> units(Dimension dimension) {
       return kAreas;
     case Dimension::counts:
       return kCounts;
+    case Dimension::current:
+      return kCurrents;
   }
   return kLengths;
 }
@@ -49,12 +52,14 @@ std::string_view example(Dimension dimension) {
       return "30 m2";
     case Dimension::counts:
       return "8 counts";
+    case Dimension::current:
+      return "20 mA";
   }
   return "";
 }
 
 std::string_view name_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 5> kNames{"length", "speed", "time", "area", "number of counts"};
+  constexpr std::array<std::string_view, 6> kNames{"length", "speed", "time", "area", "number of counts", "current"};
   return kNames.at(static_cast<std::size_t>(dimension));
 }
 

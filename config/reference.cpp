@@ -58,7 +58,7 @@ std::string show_reference() {
   add_tables(out, show_listing());
   out += "## Keys of the rig file\n\n";
   add_tables(out, rig_listing());
-  out += "## Keys of a Modbus device profile\n\n";
+  out += "## Keys of a device profile\n\n";
   add_tables(out, profile_listing());
   return out;
 }

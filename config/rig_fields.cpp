@@ -28,9 +28,9 @@ const Listing& bus_listing() {
            .range = {1200, 4'000'000}},
           {.key = "profile",
            .type = Type::text,
-           .doc = "Modbus and DMX: name of a shipped device profile (footlight-marker, pick-light, relay-16; dmx-rgb, "
-                  "dmx-dimmer), or a YAML file beside the rig.",
-           .otherwise = "footlight-marker; DMX dmx-rgb"},
+           .doc = "Name of a shipped device profile (Modbus footlight-marker, pick-light, relay-16; DMX dmx-rgb, "
+                  "dmx-dimmer; CAN cia401-32do), or a YAML file beside the rig.",
+           .otherwise = "footlight-marker; DMX dmx-rgb; CAN our own markers"},
           {.key = "supply",
            .type = Type::text,
            .doc = "Power supply of its nodes, for those that name none; `footlight dark` asks what hangs on it.",
@@ -54,6 +54,59 @@ const Listing& bus_listing() {
            .type = Type::boolean,
            .doc = "The line is low while the controller speaks.",
            .fallback = "false"},
+      }};
+  return kListing;
+}
+
+const Listing& feed_listing() {
+  static const Listing kListing{
+      "supplies[].feeds[]",
+      "Nodes of one bus that hang on the supply, by address; they need not say so themselves.",
+      {
+          {.key = "bus", .type = Type::text, .doc = "Name of the bus.", .required = true},
+          {.key = "first",
+           .type = Type::integer,
+           .doc = "First address.",
+           .otherwise = "the bus's first",
+           .range = {1, 512}},
+          {.key = "last",
+           .type = Type::integer,
+           .doc = "Last address.",
+           .otherwise = "the bus's last",
+           .range = {1, 512}},
+      }};
+  return kListing;
+}
+
+const Listing& supply_listing() {
+  static const Listing kListing{
+      "supplies[]",
+      "A power supply. Nodes hang on it that name it (`supply` of node or bus) or that it feeds.",
+      {
+          {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
+          {.key = "limit",
+           .type = Type::current,
+           .doc = "What it gives as long as one likes.",
+           .required = true,
+           .range = {0, 1000, true}},
+          {.key = "overload",
+           .type = Type::choice,
+           .doc =
+               "What happens when a cue's looks ask for more: the show is refused, or all of its lamps are dimmed by "
+               "one factor for that cue, never dark.",
+           .fallback = "refuse",
+           .choices = {"refuse", "dim"}},
+          {.key = "stagger",
+           .type = Type::time,
+           .doc = "Time between the first lights of two of its nodes after power-on, so that inrush trips nothing.",
+           .fallback = "0 s",
+           .range = {0, 1}},
+          {.key = "feeds",
+           .type = Type::mapping,
+           .doc = "What hangs on it, besides nodes and buses that name it.",
+           .otherwise = "none",
+           .listing = &feed_listing(),
+           .list = true},
       }};
   return kListing;
 }
@@ -121,6 +174,20 @@ const Listing& floor_listing() {
 
 }  // namespace
 
+const Listing& currents_listing() {
+  const auto current = [](std::string_view key, std::string_view doc) {
+    return Field{.key = key, .type = Type::current, .doc = doc, .otherwise = "0", .range = {0, 10}};
+  };
+  static const Listing kListing{
+      "lamps, currents",
+      "Currents from the supply: each colour at full, in proportion below (a lamp that "
+      "corrects for the eye takes less).",
+      {current("red", "Red alone, at full."), current("green", "Green alone, at full."),
+       current("blue", "Blue alone, at full."), current("lamp", "In the place of the colours: a lamp at full white."),
+       current("node", "A node with all of its lamps dark.")}};
+  return kListing;
+}
+
 const Listing& rig_listing() {
   static const Listing kListing{
       "rig.yaml",
@@ -144,6 +211,17 @@ const Listing& rig_listing() {
            .doc = "Devices for the whole floor at once.",
            .otherwise = "none",
            .listing = &floor_listing()},
+          {.key = "supplies",
+           .type = Type::mapping,
+           .doc = "Power supplies with their limits. Where they are listed, no other name may be used.",
+           .otherwise = "names alone, as buses and nodes give them",
+           .listing = &supply_listing(),
+           .list = true},
+          {.key = "lamps",
+           .type = Type::mapping,
+           .doc = "What lamps take, on buses whose profile does not say.",
+           .otherwise = "not known",
+           .listing = &currents_listing()},
       }};
   return kListing;
 }

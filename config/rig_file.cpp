@@ -2,17 +2,29 @@
 #include "config/rig_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <numeric>
 #include <set>
 
-#include "config/device_profile.hpp"
 #include "config/nearest.hpp"
+#include "config/rig_bus.hpp"
+#include "config/rig_supplies.hpp"
 #include "config/show_parts.hpp"
 
 namespace footlight::config {
 namespace {
+
+/// The most channels that a device of a bus has.
+struct ProfileLimit {
+  std::string profile;
+  int channels = 0;
+};
+
+std::optional<ProfileLimit> profile_limit(const Bus& bus) {
+  if (bus.profile) return ProfileLimit{bus.profile->name, bus.profile->channels};
+  if (bus.outputs) return ProfileLimit{bus.outputs->name, bus.outputs->outputs};
+  return std::nullopt;
+}
 
 /// Reads one rig: buses, then nodes, then the floor that takes what is left.
 class RigReader {
@@ -28,11 +40,13 @@ class RigReader {
   Rig read() {
     rig_.file = root_.reading().file;
     (void)root_.integer("rig");
+    supplies_.read();
     for (MappingReader& bus : root_.mappings("buses")) read_bus(bus);
     for (MappingReader& node : root_.mappings("nodes")) read_node(node);
     if (root_.has("floor")) {
       if (auto floor = root_.mapping("floor")) read_floor(*floor);
     }
+    supplies_.hang();
     if (!root_.reading().diagnostics.has_errors()) warn_of_dark_places();
     std::stable_sort(rig_.nodes.begin(), rig_.nodes.end(), [](const Node& a, const Node& b) {
       return std::pair(a.bus, a.address) < std::pair(b.bus, b.address);
@@ -42,124 +56,12 @@ class RigReader {
 
  private:
   void read_bus(MappingReader& reader) {
-    Bus bus;
-    bus.position = reader.position();
-    const auto name = reader.text("name");
-    const auto url = reader.text("url");
-    const auto kind = read_kind(reader, url);
-    const bool known = reader.has("kind") || kind;
-    const auto speed = reader.integer("bits_per_second");
-    if (name) {
-      if (find_bus(*name)) {
-        reader.error("name", "a second bus has the name " + in_quotes(*name), "names of buses are unique");
-      }
-      bus.name = *name;
+    Bus bus = read_bus_keys(reader, folder_, files_);
+    if (!bus.name.empty() && find_bus(bus.name)) {
+      reader.error("name", "a second bus has the name " + in_quotes(bus.name), "names of buses are unique");
     }
-    if (kind) bus.kind = *kind;
-    if (url) bus.url = *url;
-    bus.supply = reader.text("supply").value_or("");
-    bus.bits_per_second = speed.value_or(bus.kind == BusKind::can ? 500'000 : 115'200);
-    if (kind && speed) check_speed(reader, bus);
-    if (known) read_bus_profile(reader, bus);
-    if (known) read_line(reader, bus);
+    bus.supply = supplies_.name_in(reader).value_or("");
     rig_.buses.push_back(std::move(bus));  // kept when wrong, so that its nodes give no echo
-  }
-
-  static std::optional<BusKind> read_kind(MappingReader& reader, const std::optional<std::string>& url) {
-    const auto choice = reader.choice("kind");
-    const auto by_url = url ? kind_of_url(*url) : std::nullopt;
-    if (url && !by_url) {
-      reader.error("url", in_quotes(*url) + " is not the URL of a bus",
-                   choice ? urls_of(static_cast<BusKind>(*choice)) : known_urls());
-    }
-    if (!choice) return by_url;
-    const auto kind = static_cast<BusKind>(*choice);
-    if (by_url && *by_url != kind) {
-      reader.error("url",
-                   in_quotes(*url) + " is the URL of a " + std::string(to_text(*by_url)) + " bus, and this one is " +
-                       std::string(to_text(kind)),
-                   urls_of(kind));
-    }
-    return kind;
-  }
-
-  static void check_speed(MappingReader& reader, const Bus& bus) {
-    const bool can = bus.kind == BusKind::can;
-    const Range range = can ? Range{10'000, 1'000'000} : Range{1200, 4'000'000};
-    if (range.contains(bus.bits_per_second)) return;
-    reader.error("bits_per_second", in_quotes(std::to_string(bus.bits_per_second)) + " is out of range",
-                 std::string(to_text(bus.kind)) + ": " + to_text(range, "bit/s"));
-  }
-
-  static void read_line(MappingReader& reader, Bus& bus) {
-    if (bus.kind != BusKind::serial && bus.kind != BusKind::modbus_rtu) {
-      for (const char* key : {"characters", "direction", "direction_line", "direction_inverted"}) {
-        if (!reader.has(key)) continue;
-        reader.error(reader.key_position(key), reader.path(key), "the key has no meaning here",
-                     "only serial and modbus-rtu buses are lines");
-      }
-      return;
-    }
-    if (reader.has("characters")) {
-      if (const auto choice = reader.choice("characters")) bus.line.characters = static_cast<Characters>(*choice);
-    }
-    bus.line.direction_inverted = reader.boolean("direction_inverted").value_or(false);
-    const auto direction = reader.choice("direction");
-    if (!direction) return;
-    bus.line.direction = static_cast<LineDirection>(*direction);
-    read_direction_line(reader, bus);
-  }
-
-  static void read_direction_line(MappingReader& reader, Bus& bus) {
-    const bool by_gpio = bus.line.direction == LineDirection::gpio;
-    if (!reader.has("direction_line")) {
-      if (by_gpio) reader.error("direction", "no line is named", "direction_line: gpiochip0:17");
-      return;
-    }
-    if (!by_gpio) {
-      return reader.error(reader.key_position("direction_line"), reader.path("direction_line"),
-                          "the key has no meaning here", "direction: gpio uses it");
-    }
-    const auto text = reader.text("direction_line");
-    if (!text) return;
-    const auto colon = text->rfind(':');
-    const char* const end = text->data() + text->size();
-    const char* const begin = colon == std::string::npos ? end : text->data() + colon + 1;
-    const auto [stop, wrong] = std::from_chars(begin, end, bus.line.direction_offset);
-    if (wrong != std::errc{} || stop != end || bus.line.direction_offset < 0 || colon == 0) {
-      return reader.error("direction_line", in_quotes(*text) + " is no GPIO line", "chip and number, as gpiochip0:17");
-    }
-    bus.line.direction_chip = text->substr(0, colon);
-  }
-
-  void read_bus_profile(MappingReader& reader, Bus& bus) {
-    const bool modbus = bus.kind == BusKind::modbus_rtu || bus.kind == BusKind::modbus_tcp;
-    if (!modbus && bus.kind != BusKind::dmx) {
-      if (reader.has("profile")) {
-        reader.error(reader.key_position("profile"), reader.path("profile"), "the key has no meaning here",
-                     "only Modbus devices and DMX lamps have a profile");
-      }
-      return;
-    }
-    if (modbus && !reader.has("profile")) {
-      bus.profile = footlight_marker_profile();
-      return;
-    }
-    const auto name = reader.has("profile") ? reader.text("profile") : std::optional<std::string>("dmx-rgb");
-    if (!name) return;
-    const auto file = find_profile(*name, folder_);
-    if (!file) {
-      reader.error("profile", "there is no device profile " + in_quotes(*name),
-                   suggestion(*name, shipped_profiles(), "shipped profiles") + "; or a .yaml file beside the rig");
-      return;
-    }
-    Diagnostics& diagnostics = reader.reading().diagnostics;
-    if (modbus) {
-      bus.profile = read_profile(*file, diagnostics);
-    } else {
-      bus.fixture = read_fixture(*file, diagnostics);
-    }
-    if (std::find(files_.begin(), files_.end(), file->string()) == files_.end()) files_.push_back(file->string());
   }
 
   void read_node(MappingReader& reader) {
@@ -173,7 +75,9 @@ class RigReader {
     node.address = *address;
     const Bus& on = rig_.buses[bus->at()];
     node.name = reader.text("name").value_or(on.name + "-" + std::to_string(*address));
-    node.supply = reader.text("supply").value_or(on.supply);
+    const auto supply = supplies_.name_in(reader);
+    node.supply = supply.value_or(on.supply);
+    if (supply) supplies_.keep(node, reader.position().line);
     if (*address > last_address(on.kind)) {
       return reader.error("address", "the address " + std::to_string(*address) + " is out of range",
                           std::string(to_text(on.kind)) + ": 1 to " + std::to_string(last_address(on.kind)));
@@ -250,11 +154,12 @@ class RigReader {
   }
 
   void check_profile(MappingReader& reader, const Node& node, const Bus& bus) {
-    if (!bus.profile || static_cast<int>(node.channels.size()) <= bus.profile->channels) return;
+    const auto limit = profile_limit(bus);
+    if (!limit || static_cast<int>(node.channels.size()) <= limit->channels) return;
     if (node.channels.size() > kChannelsPerNode) return;  // has been said
     reader.error("channels", "the node has " + std::to_string(node.channels.size()) + " channels",
-                 "a device of the profile " + in_quotes(bus.profile->name) + " has at most " +
-                     std::to_string(bus.profile->channels) + "; give the others to another node");
+                 "a device of the profile " + in_quotes(limit->profile) + " has at most " +
+                     std::to_string(limit->channels) + "; give the others to another node");
   }
 
   /// @return how many channels the text stands for
@@ -357,12 +262,13 @@ class RigReader {
         return floor.error("buses", "the lamps of the DMX bus " + in_quotes(bus.name) + " have addresses set by hand",
                            "list them under nodes");
       }
-      if (!bus.profile || *channels <= bus.profile->channels) continue;
-      return floor.error("channels_per_node",
-                         "the devices of the bus " + in_quotes(bus.name) + " have fewer than " +
-                             std::to_string(*channels) + " channels",
-                         "at most " + std::to_string(bus.profile->channels) + ", as the profile " +
-                             in_quotes(bus.profile->name) + " says");
+      const auto limit = profile_limit(bus);
+      if (!limit || *channels <= limit->channels) continue;
+      return floor.error(
+          "channels_per_node",
+          "the devices of the bus " + in_quotes(bus.name) + " have fewer than " + std::to_string(*channels) +
+              " channels",
+          "at most " + std::to_string(limit->channels) + ", as the profile " + in_quotes(limit->profile) + " says");
     }
     lay_floor(floor, buses, per_bus, *channels, lamps_left(*with_wearables));
   }
@@ -425,6 +331,7 @@ class RigReader {
   std::vector<std::string>& files_;
   std::filesystem::path folder_;
   Rig rig_;
+  SuppliesReader supplies_{root_, rig_};
   std::map<std::string, PerformerIndex> wearables_;
   std::map<std::pair<BusIndex, int>, int> nodes_at_;
   std::map<std::pair<BusIndex, int>, int> slots_;  ///< DMX: line of the node that uses one

@@ -62,6 +62,7 @@ Json value_of(const Field& field) {
     case Type::time:
     case Type::area:
     case Type::counts:
+    case Type::current:
       return quantity_of(field);
     case Type::at_count:
       return text_of(kCount);

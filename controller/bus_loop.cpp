@@ -29,7 +29,8 @@ constexpr std::uint8_t kStateHold = 2;
 
 }  // namespace
 
-BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver)
+BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver,
+                 const std::vector<SwitchOn>& switch_on)
     : schedule_(schedule), driver_(driver), can_(driver.capabilities()) {
   latch_time_ = driver.latch_time();
   status_time_ = driver.status_time();
@@ -45,6 +46,9 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
     by_node_[address.node.at()] = static_cast<std::int32_t>(nodes_.size());
     NodeState& node = nodes_.emplace_back();
     node.address = address;
+    if (switch_on.empty()) continue;
+    node.switch_on = switch_on[address.node.at()];
+    next_turn_.resize(std::max(next_turn_.size(), node.switch_on.supply + 1));
   }
   for (std::size_t i = 1; i < schedule.looks().size(); ++i) {
     uploads_[i] = std::uint8_t{kUploads};
@@ -106,6 +110,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
   for (const NodeState& node : nodes_) {
     if (node.misses > 0 && !can_.pushes_status) consider(node.ask_at);
     if (node.rest.count() > 0) consider(node.rests_until);
+    consider(node.turn);
   }
   if (refused_) consider(now_ + kRetryBusy);
   return earliest;
@@ -116,6 +121,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
 void BusLoop::follow(const BusTarget& target) noexcept {
   if (!placed_) {
     placed_ = true;
+    give_turns();
     seek(target.current);
     for (NodeState& node : nodes_) node.counted = target.current != 0;
   }
@@ -149,6 +155,14 @@ void BusLoop::aim(std::size_t next, Instant at) noexcept {
   if (can_.sequenced_latch || at == kNever) return;
   passes_ = 2;
   if (at - now_ < 4 * preloads_left()) passes_ = 1;
+}
+
+/// At the start: in the order of the rig, over all buses.
+void BusLoop::give_turns() noexcept {
+  for (NodeState& node : nodes_) {
+    node.turn = now_ + node.switch_on.turn;
+    if (node.switch_on.stagger.count() > 0) next_turn_[node.switch_on.supply] = node.turn + node.switch_on.stagger;
+  }
 }
 
 void BusLoop::seek(std::size_t k) noexcept {
@@ -356,6 +370,12 @@ void BusLoop::on_boot(NodeState& node) noexcept {
   node.in_flight = false;
   node.pending = kNone;
   node.offered = kNone;
+  if (node.switch_on.stagger.count() > 0 && node.turn <= now_) {
+    // Its supply may have been off: then all of its nodes come back at the same time.
+    Instant& next = next_turn_[node.switch_on.supply];
+    node.turn = std::max(now_, next);
+    next = node.turn + node.switch_on.stagger;
+  }
   for (WornState& worn : worn_) {
     if (&nodes_[worn.position] == &node) worn.held = worn.pending = kNone;
   }

@@ -50,10 +50,16 @@ inline constexpr int kUploads = 2;
 /// sequence (CANopen), nothing of the next switch is preloaded before the verification of this one has had its time,
 /// and from the first such preload no latch is sent but the switch's own.
 ///
+/// Nodes of a supply that staggers are lit for the first time one after the other, after the start and after they have
+/// booted: until its turn a node gets neither preload nor repair, and takes no part in the latches of running cues,
+/// whose moment is that of all nodes that are lit.
+///
 /// Pure stepping on one thread; `step` neither allocates, locks nor throws. Borrows schedule and driver.
 class BusLoop final : private drivers::EventSink {
  public:
-  BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver);
+  /// @param switch_on for every node of the rig; empty: all at once
+  BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver,
+          const std::vector<SwitchOn>& switch_on = {});
 
   /// Does what is due. @return when to call again, if nothing arrives before
   Instant step(Instant now, const BusTarget& target) noexcept;
@@ -110,6 +116,8 @@ class BusLoop final : private drivers::EventSink {
     Duration backoff{};           ///< in quarantine
     Instant rests_until;          ///< it has said that it is busy
     Duration rest{};              ///< the last one; doubled while it goes on
+    SwitchOn switch_on;
+    Instant turn;  ///< it may be lit from then on
   };
 
   void on_event(const drivers::DeviceEvent& event) override;
@@ -138,6 +146,9 @@ class BusLoop final : private drivers::EventSink {
   bool preload_next() noexcept;
   bool ask_quarantined(bool hopeful_only) noexcept;
   [[nodiscard]] bool rests(const NodeState& node) const noexcept { return now_ < node.rests_until; }
+  /// It is dark yet, and its supply lights others first.
+  [[nodiscard]] bool waits(const NodeState& node) const noexcept { return now_ < node.turn && !node.right; }
+  void give_turns() noexcept;
   [[nodiscard]] bool hopeful(const NodeState& node) const noexcept;
   bool refresh() noexcept;
 
@@ -211,6 +222,8 @@ class BusLoop final : private drivers::EventSink {
   Instant since_;
   Instant line_free_;  ///< estimate, for wires with a queue
   std::array<Duration, 7> longest_{};
+
+  std::vector<Instant> next_turn_;  ///< of each supply: of its next node that boots
 
   std::vector<WornState> worn_;
   std::size_t sent_content_ = kNone;  ///< switch of the content under way

@@ -136,7 +136,7 @@ bool BusLoop::repair() noexcept {
   bool under_way = false;
   bool ready = false;
   for (NodeState& node : nodes_) {
-    if (node.right || node.verify || node.quarantined || rests(node)) continue;
+    if (node.right || node.verify || node.quarantined || rests(node) || waits(node)) continue;
     under_way = under_way || node.in_flight;
     ready = ready || node.pending == current_;
     if (node.in_flight || node.pending == current_) continue;
@@ -159,8 +159,10 @@ bool BusLoop::repair() noexcept {
 // ---- before the next one
 
 bool BusLoop::wants_preload(const NodeState& node) const noexcept {
-  if (next_ == current_ || node.quarantined || node.in_flight || rests(node) || (node.right && !node.changes))
+  if (next_ == current_ || node.quarantined || node.in_flight || rests(node) || waits(node) ||
+      (node.right && !node.changes)) {
     return false;
+  }
   if (can_.sequenced_latch) return node.pending != next_;
   return node.offered != next_ || node.offers < passes_;
 }
@@ -290,7 +292,7 @@ bool BusLoop::ask_quarantined(bool hopeful_only) noexcept {
     if (!node.quarantined || node.in_flight || now_ < node.ask_at || (hopeful_only && !hopeful(node))) continue;
     if (can_.readback) {
       if (!send_ask(node)) return false;
-    } else if (!may_latch_current() || !send_preload(node, current_)) {
+    } else if (waits(node) || !may_latch_current() || !send_preload(node, current_)) {
       return false;
     }
     node.ask_at = now_ + node.backoff;

@@ -310,6 +310,8 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   const std::vector<CuePlay> plays = cue_plays(show, plan);
   Result<CueSchedule> schedule = Compiler(show, plan, rig, plays).compile();
   if (!schedule) return schedule;
+  schedule = within_supplies(std::move(schedule).value(), rig, drivers, plays);
+  if (!schedule) return schedule;
   for (std::size_t b = 0; b < drivers.size(); ++b) {
     const int most = drivers[b]->capabilities().looks;
     const auto wanted = static_cast<int>(schedule->looks().size()) - 1;

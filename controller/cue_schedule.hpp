@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/supply_load.hpp"
 #include "controller/wearable_contents.hpp"
 #include "core/look.hpp"
 #include "core/plan.hpp"
@@ -86,6 +87,9 @@ class CueSchedule {
   void set_contents(WearableContents contents);
   [[nodiscard]] const LookNumbers& numbers() const { return numbers_; }
   void set_numbers(LookNumbers numbers) { numbers_ = std::move(numbers); }
+  /// What the rig's supplies have to give; empty unless the rig lists supplies.
+  [[nodiscard]] const std::vector<SupplyLoad>& supplies() const { return supplies_; }
+  void set_supplies(std::vector<SupplyLoad> supplies) { supplies_ = std::move(supplies); }
 
  private:
   using Slot = std::unique_ptr<const ResetMove>;
@@ -103,6 +107,7 @@ class CueSchedule {
   WearableContents contents_;
   LookNumbers numbers_;
   std::unique_ptr<Resets> resets_ = std::make_unique<Resets>();
+  std::vector<SupplyLoad> supplies_;
 };
 
 /// The byte of a plan that all frames of a show carry: the last two digits of its hash; a sum over its marks where it
@@ -115,7 +120,8 @@ class CueSchedule {
 }
 
 /// Compiles a valid plan. Refused (ErrorKind::refused) for a plan that is not valid and, with the arithmetic, for a bus
-/// that cannot carry a switch's preloads and receipts before it is due with 30 % reserve.
+/// that cannot carry a switch's preloads and receipts before it is due with 30 % reserve, or a supply that cannot carry
+/// its lamps (supply_load.hpp; dimmed where the rig says so).
 /// ErrorKind::input when the looks of the show are too many for a marker.
 /// @param drivers one for each bus of the rig, for their budgets
 /// Complexity: O(switches x (performers + cells + markers)). Deterministic.

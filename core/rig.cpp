@@ -35,4 +35,24 @@ std::string_view to_text(Characters characters) {
   return "8N1";
 }
 
+ModbusProfile footlight_marker_profile() {
+  ModbusProfile out;
+  out.name = "footlight-marker";
+  out.look_register = 0x0000;
+  out.latch_register = 0x0020;
+  out.heartbeat_register = 0x0030;
+  out.status_register = 0x0040;
+  out.look_table_register = 0x0050;
+  out.unique_id_register = 0x0060;
+  out.identity_register = 0x0062;
+  out.identity_registers = 8;
+  out.identity_is_text = true;
+  out.identify_register = 0x006A;
+  out.readdress_register = 0x006C;
+  out.health = {{"battery", 0x0048, 1, "%", false},
+                {"supply", 0x0049, 0.001, "V", false},
+                {"temperature", 0x004A, 0.1, "C", true}};
+  return out;
+}
+
 }  // namespace footlight

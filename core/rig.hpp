@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -101,6 +102,36 @@ struct ModbusProfile {
   [[nodiscard]] bool proves_looks() const { return has_preload_sequence && status_register.has_value(); }
 };
 
+/// As drivers/profiles/footlight-marker.yaml has it: for rigs that need no file at all.
+[[nodiscard]] ModbusProfile footlight_marker_profile();
+
+/// A value that a CANopen device is given before the show.
+struct ObjectValue {
+  int index = 0;  ///< 0x1000..0xFFFF
+  int sub = 0;    ///< 0..255
+  int bytes = 1;  ///< 1, 2 or 4
+  std::uint32_t value = 0;
+  friend bool operator==(const ObjectValue&, const ObjectValue&) = default;
+};
+
+/// A CANopen module of digital outputs (CiA 401), each of them a lamp that is on or off; read from
+/// drivers/profiles/*.yaml.
+struct OutputModule {
+  /// What its outputs do when the controller has fallen silent, or the module has stopped.
+  enum class OnFailure { dark, lit, keep };
+  std::string name;
+  int outputs = 32;  ///< 1..32; eight of them are one byte of object 0x6200
+  OnFailure on_failure = OnFailure::dark;
+  Duration heartbeat = seconds(1);        ///< that it sends
+  Duration silence = milliseconds(1000);  ///< of the controller, after which it falls back
+  std::optional<std::uint32_t> vendor;    ///< in object 0x1018; absent: whoever it is
+  std::optional<std::uint32_t> product;
+  std::vector<ObjectValue> objects;  ///< written besides, in this order
+  friend bool operator==(const OutputModule&, const OutputModule&) = default;
+  /// Bytes of outputs.
+  [[nodiscard]] int bytes() const { return (outputs + 7) / 8; }
+};
+
 /// One slot (DMX channel) of a lamp.
 enum class DmxSlot { dimmer, red, green, blue, white, amber, zero, full };
 
@@ -134,6 +165,15 @@ struct SerialLine {
   friend bool operator==(const SerialLine&, const SerialLine&) = default;
 };
 
+/// What lamps take from their supply, in ampere: of each colour at full brightness, less in proportion.
+struct LampCurrents {
+  double red_a = 0;
+  double green_a = 0;
+  double blue_a = 0;
+  double node_a = 0;  ///< of a node with all of its lamps dark
+  friend bool operator==(const LampCurrents&, const LampCurrents&) = default;
+};
+
 /// One wire. `url` chooses the transport: sim://serial, sim://rtu, sim://tcp, sim://can, serial:///dev/...,
 /// rtu:///dev/..., tcp://host:502, can://can0, dmx:///dev/....
 struct Bus {
@@ -145,7 +185,9 @@ struct Bus {
   Position position;
   std::string supply{};  ///< power supply of its nodes that name none; empty: not known
   SerialLine line{};
-  std::optional<DmxFixture> fixture{};  ///< DMX only
+  std::optional<DmxFixture> fixture{};     ///< DMX only
+  std::optional<OutputModule> outputs{};   ///< CAN only; absent: our own markers
+  std::optional<LampCurrents> currents{};  ///< as the devices' profile says; absent: the rig's
 
   /// On this serial or RTU line.
   [[nodiscard]] Characters characters() const {
@@ -186,26 +228,23 @@ struct MarkerPlace {
 struct Supply {
   enum class Overload { refuse, dim };
   std::string name;    ///< unique; nodes and buses name it
-  double limit_a = 0;  ///< continuous current
+  double limit_a = 0;  ///< that it gives as long as one likes
   Overload overload = Overload::refuse;
-  double switch_on_a = 0;  ///< the most by which its current may rise within 100 ms; 0: not limited
+  Duration stagger{};  ///< between the first lights of two of its nodes; 0: all at once
   Position position;
-};
-
-/// What lamps take from their supply, in ampere, at full brightness.
-struct LampCurrents {
-  double red_a = 0;
-  double green_a = 0;
-  double blue_a = 0;
-  double node_a = 0;  ///< of a node with all lamps dark
 };
 
 struct Rig {
   std::string file;  ///< empty when made for the stage
   std::vector<Bus> buses;
-  std::vector<Node> nodes;  ///< ordered by bus, then address
-  std::vector<Supply> supplies{};
+  std::vector<Node> nodes;         ///< ordered by bus, then address
+  std::vector<Supply> supplies{};  ///< empty: names alone, as buses and nodes have them
   LampCurrents currents{};
+
+  /// What a lamp of this bus takes.
+  [[nodiscard]] const LampCurrents& currents_of(const Bus& bus) const {
+    return bus.currents ? *bus.currents : currents;
+  }
 };
 
 }  // namespace footlight

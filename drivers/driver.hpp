@@ -147,6 +147,14 @@ class Driver {
   /// What is taken for granted of devices that prove nothing, for people; empty where `proves_looks`.
   [[nodiscard]] virtual std::string assumption() const { return {}; }
 
+  /// Why nodes of this bus cannot be used, as they have said themselves: a sentence each, for people.
+  [[nodiscard]] virtual std::vector<std::string> complaints() const { return {}; }
+
+  /// What a lamp of this bus really shows for a look: a device of few colours has the nearest one.
+  [[nodiscard]] virtual Look shown(const Look& look) const { return look; }
+  /// What it shows by itself: after power-on, and when the controller has fallen silent.
+  [[nodiscard]] virtual Look unguided() const { return no_guidance_look(); }
+
   /// Budget on the wire, receipts, silences and turnarounds included, without faults. Pure.
   [[nodiscard]] virtual Duration preload_time(int channels) const = 0;
   /// One node's; the answers to a latch (`pushes_status`) take as much each.

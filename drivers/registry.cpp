@@ -35,12 +35,12 @@ DriverPointer make_serial(const Bus& /*bus*/, const Nodes& nodes, std::uint8_t p
   return std::make_unique<SerialDriver>(port_of_kind<ByteStream>(port), nodes, plan_byte);
 }
 
-DriverPointer make_canopen(const Bus& /*bus*/, const Nodes& nodes, std::uint8_t /*plan_byte*/, PortReference port) {
-  return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes);
+DriverPointer make_canopen(const Bus& bus, const Nodes& nodes, std::uint8_t /*plan_byte*/, PortReference port) {
+  return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes, bus.outputs);
 }
 
 DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, std::uint8_t plan_byte, PortReference port) {
-  const ModbusProfile profile = bus.profile ? *bus.profile : modbus::footlight_marker();
+  const ModbusProfile profile = bus.profile ? *bus.profile : footlight_marker_profile();
   return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), profile, nodes, plan_byte);
 }
 
@@ -131,9 +131,10 @@ Result<Port> open_can_bus(const Bus& bus, const std::string& place, const Nodes&
   return as_port(open_can(place, bus.bits_per_second));
 }
 
-std::vector<std::string> preflight_can_bus(const Bus& bus, const std::string& place) {
+std::vector<Objection> preflight_can_bus(const Bus& bus, const std::string& place) {
   const auto interface = read_can_interface(place);
-  if (!interface) return {interface.error().message};
+  // What this program was not built to see need not be wrong.
+  if (!interface) return {{interface.error().message, interface.error().kind == ErrorKind::device}};
   return objections(*interface, bus.bits_per_second);
 }
 
@@ -142,7 +143,7 @@ struct Transport {
   BusKind kind;
   std::string_view example;
   Result<Port> (*open)(const Bus&, const std::string& place, const Nodes&);
-  std::vector<std::string> (*preflight)(const Bus&, const std::string& place) = nullptr;
+  std::vector<Objection> (*preflight)(const Bus&, const std::string& place) = nullptr;
 };
 
 // A new transport is a line here and its sources in CMakeLists.txt.
@@ -187,6 +188,7 @@ bool levels_show(const Bus& bus, const Look& look, std::span<const std::uint8_t>
 }
 
 LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look) {
+  if (bus.outputs) return index != kDark && look.brightness > 0 && look.colour != Colour{} ? 1 : 0;
   return bus.profile ? modbus::value_of(*bus.profile, index, look) : index;
 }
 
@@ -223,12 +225,12 @@ Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes) {
   return wrong("no transport of that name", examples);
 }
 
-std::vector<std::string> preflight(const Bus& bus) {
-  std::vector<std::string> found;
+std::vector<Objection> preflight(const Bus& bus) {
+  std::vector<Objection> found;
   for (const Transport& transport : kTransports) {
     if (transport.scheme != scheme_of(bus.url) || transport.preflight == nullptr) continue;
-    for (const std::string& what : transport.preflight(bus, std::string(place_of(bus.url)))) {
-      found.push_back("bus \"" + bus.name + "\": " + what);
+    for (const Objection& objection : transport.preflight(bus, std::string(place_of(bus.url)))) {
+      found.push_back({"bus \"" + bus.name + "\": " + objection.text, objection.stops});
     }
   }
   return found;

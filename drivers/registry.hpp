@@ -11,6 +11,7 @@
 #include "core/result.hpp"
 #include "core/rig.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/objection.hpp"
 #include "drivers/transport.hpp"
 
 namespace footlight::drivers {
@@ -47,7 +48,7 @@ using Port = std::variant<std::unique_ptr<ByteStream>, std::unique_ptr<CanPort>,
 [[nodiscard]] Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes);
 
 /// What would go wrong in a show with the real wire that the bus's URL names, as far as the machine tells without
-/// opening it: one sentence each, with the command that mends it. Empty for kinds of wire that have nothing to look at.
-[[nodiscard]] std::vector<std::string> preflight(const Bus& bus);
+/// opening it. Empty for simulated buses and for kinds of wire that have nothing to look at.
+[[nodiscard]] std::vector<Objection> preflight(const Bus& bus);
 
 }  // namespace footlight::drivers

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "sim/can_bits.hpp"
+#include "sim/markers/canopen_marker.hpp"
+#include "sim/markers/output_module.hpp"
 
 namespace footlight::sim {
 namespace {
@@ -54,7 +56,12 @@ std::size_t CanBus::add(std::unique_ptr<SimulatedNode> node) {
   FL_CHECK(node->address() < 128);
   const std::size_t slot = nodes_.size();
   slot_of_id_[node->address()] = static_cast<int>(slot);
-  markers_.emplace_back(static_cast<std::uint8_t>(node->address()), node->model(), node->unique_id());
+  const auto id = static_cast<std::uint8_t>(node->address());
+  if (bus_.outputs) {
+    markers_.push_back(std::make_unique<OutputModuleNode>(id, *bus_.outputs, node->model(), node->unique_id()));
+  } else {
+    markers_.push_back(std::make_unique<CanopenMarker>(id, node->model(), node->unique_id()));
+  }
   nodes_.push_back(std::move(node));
   return slot;
 }
@@ -81,8 +88,8 @@ void CanBus::power_on(std::size_t slot) {
   nodes_[slot]->power_on();
   if (!nodes_[slot]->powered()) return;
   ++powered_;
-  markers_[slot].power_on();
-  want(slot, markers_[slot].boot_up());
+  markers_[slot]->power_on();
+  want(slot, markers_[slot]->boot_up());
   around_.world.schedule(around_.world.now() + kHeartbeatPeriod, *this,
                          token(kHeartbeatDue, slot, nodes_[slot]->epoch()));
 }
@@ -99,16 +106,20 @@ void CanBus::act(std::uint64_t token_of_event) {
       end();
       return;
     case kStatusDue:
-      if (nodes_[slot]->epoch() == generation_of(token_of_event)) want(slot, markers_[slot].status());
+      if (nodes_[slot]->epoch() == generation_of(token_of_event)) want(slot, markers_[slot]->status());
       return;
     case kLineBack:
       line_back();
       return;
-    default:
+    default: {
       if (nodes_[slot]->epoch() != generation_of(token_of_event)) return;
-      want(slot, markers_[slot].heartbeat());
-      around_.world.schedule(around_.world.now() + kHeartbeatPeriod, *this, token_of_event);
+      const Duration period = markers_[slot]->beat(around_.world.now());
+      const CanFrame heartbeat = markers_[slot]->heartbeat();
+      if (heartbeat.id != 0) want(slot, heartbeat);
+      if (bus_.outputs) nodes_[slot]->after_receiving();  // its outputs may have fallen back
+      around_.world.schedule(around_.world.now() + period, *this, token_of_event);
       return;
+    }
   }
 }
 
@@ -198,7 +209,7 @@ void CanBus::end() {
   } else if (now_sending_.fate == Fate::disturbed) {
     note = "corrupt";
     for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-      if (nodes_[slot]->powered()) markers_[slot].count_error();
+      if (nodes_[slot]->powered()) markers_[slot]->count_error();
     }
   } else if (now_sending_.fate == Fate::unacknowledged) {
     note = "not acknowledged";
@@ -263,22 +274,22 @@ void CanBus::deliver() {
 
 void CanBus::deliver_to(std::size_t slot) {
   if (!nodes_[slot]->powered() || missed_[slot]) return;
-  switch (markers_[slot].receive(now_sending_.frame, around_.world.now())) {
-    case CanopenMarker::Reaction::none:
+  switch (markers_[slot]->receive(now_sending_.frame, around_.world.now())) {
+    case CanNode::Reaction::none:
       break;
-    case CanopenMarker::Reaction::status:
+    case CanNode::Reaction::status:
       around_.world.schedule(
           around_.world.now() + around_.timing.up_to(kLongestStatusDelay) + around_.faults.lateness(), *this,
           token(kStatusDue, slot, nodes_[slot]->epoch()));
       break;
-    case CanopenMarker::Reaction::boot_up:
-      want(slot, markers_[slot].boot_up());
+    case CanNode::Reaction::boot_up:
+      want(slot, markers_[slot]->boot_up());
       break;
-    case CanopenMarker::Reaction::emergency:
-      want(slot, markers_[slot].emergency());
+    case CanNode::Reaction::emergency:
+      want(slot, markers_[slot]->emergency());
       break;
-    case CanopenMarker::Reaction::sdo:
-      want(slot, markers_[slot].sdo_answer());
+    case CanNode::Reaction::sdo:
+      want(slot, markers_[slot]->sdo_answer());
       break;
   }
   nodes_[slot]->after_receiving();

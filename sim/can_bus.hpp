@@ -3,10 +3,11 @@
 
 #include <array>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "drivers/transport.hpp"
-#include "sim/markers/canopen_marker.hpp"
+#include "sim/markers/can_node.hpp"
 #include "sim/simulated_bus.hpp"
 
 namespace footlight::sim {
@@ -79,7 +80,7 @@ class CanBus final : public SimulatedBus, public drivers::CanPort {
   [[nodiscard]] bool cut_off(const Transmission& transmission) const;
   static bool yields(const Wish& a, const Wish& b);
 
-  std::deque<CanopenMarker> markers_;
+  std::vector<std::unique_ptr<CanNode>> markers_;
   std::array<int, 128> slot_of_id_ = [] {
     std::array<int, 128> none{};
     none.fill(-1);

@@ -50,7 +50,7 @@ std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surro
 
 NodeModel model_of(const Node& node, const Bus& bus) {
   const auto channels = static_cast<int>(node.channels.size());
-  if (bus.kind == BusKind::dmx) return {channels, false, kDark};
+  if (bus.kind == BusKind::dmx || bus.outputs) return {channels, false, kDark};
   if (!bus.profile) return {channels, true};
   const bool ours = bus.profile->heartbeat_register || bus.profile->status_register;
   return {channels, bus.profile->heartbeat_register.has_value(), ours ? kNoGuidance : kDark};
@@ -242,6 +242,10 @@ Look SimulatedRig::lamp(NodeIndex node, int channel) const {
     return Look{colour, Effect::steady, static_cast<std::uint8_t>(colour == Colour{} ? 0 : 255)};
   }
   const NodeModel& model = bus->node(slot).model();
+  if (bus->bus().outputs) {
+    const bool lit = model.shown(channel) != 0;
+    return Look{lit ? Colour{255, 255, 255} : Colour{}, Effect::steady, static_cast<std::uint8_t>(lit ? 255 : 0)};
+  }
   if (model.identifying(state_->world.now())) return Look{{255, 255, 255}, Effect::blink, 255};
   return model.look(model.shown(channel));
 }

@@ -117,6 +117,7 @@ std::string live_failure(const LiveReport& report) {
     text += fmt::format("{}bus \"{}\" ({}): {} of {} nodes not confirmed right at the end", text.empty() ? "" : "\n",
                         bus.name, bus.url, bus.unconfirmed, bus.nodes);
     for (std::size_t i = 0; i < bus.silent.size(); ++i) text += (i == 0 ? "; silent: " : ", ") + bus.silent[i];
+    for (const std::string& complaint : bus.complaints) text += "; " + complaint;
     if (!bus.trouble.empty()) text += "; its wire is down: " + bus.trouble;
   }
   return text;

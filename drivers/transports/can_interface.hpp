@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "drivers/objection.hpp"
 #include "drivers/transport.hpp"
 
 namespace footlight::drivers {
@@ -28,15 +29,16 @@ struct CanInterface {
 };
 
 /// Asks the kernel by netlink (libnl-route).
-/// Errors: ErrorKind::device: no such interface, not a CAN interface, or a program built without libnl.
+/// Errors: ErrorKind::device: no such interface, or not a CAN interface; ErrorKind::refused: a program built without
+/// libnl, which cannot know.
 [[nodiscard]] Result<CanInterface> read_can_interface(const std::string& name);
 
 /// CAN interfaces of this machine, virtual ones too, in the order of their names; it needs no library.
 /// @param folder in which the kernel has a folder for each network interface
 [[nodiscard]] std::vector<std::string> can_interface_names(const std::string& folder = "/sys/class/net");
 
-/// What would go wrong with it in a show, one sentence each, with the command that mends it. Empty: nothing.
+/// What would go wrong with it in a show, with the command that mends it. Empty: nothing.
 /// @param bits_per_second as the rig says
-[[nodiscard]] std::vector<std::string> objections(const CanInterface& interface, int bits_per_second);
+[[nodiscard]] std::vector<Objection> objections(const CanInterface& interface, int bits_per_second);
 
 }  // namespace footlight::drivers

@@ -10,12 +10,12 @@ constexpr int kRestartMs = 100;
 
 }  // namespace
 
-std::vector<std::string> objections(const CanInterface& interface, int bits_per_second) {
-  std::vector<std::string> found;
+std::vector<Objection> objections(const CanInterface& interface, int bits_per_second) {
+  std::vector<Objection> found;
   const std::string& name = interface.name;
   const std::string rate = std::to_string(bits_per_second);
-  const auto object = [&](const std::string& what, const std::string& mends) {
-    found.push_back("CAN interface \"" + name + "\": " + what + " (" + mends + ")");
+  const auto object = [&](const std::string& what, const std::string& mends, bool stops = false) {
+    found.push_back({"CAN interface \"" + name + "\": " + what + " (" + mends + ")", stops});
   };
   const std::string set =
       interface.controller ? " type can bitrate " + rate + " restart-ms " + std::to_string(kRestartMs) : std::string();
@@ -24,11 +24,11 @@ std::vector<std::string> objections(const CanInterface& interface, int bits_per_
     object("its queue holds " + std::to_string(interface.queue_length) + " frames, less than a node's preload needs",
            "ip link set " + name + " txqueuelen " + std::to_string(kShortestQueue));
   }
-  if (!interface.up) object("is down", "ip link set " + name + " up" + set);
+  if (!interface.up) object("is down", "ip link set " + name + " up" + set, true);
   if (!interface.controller) return found;
   const CanInterface::Controller& controller = *interface.controller;
   if (controller.bits_per_second != 0 && controller.bits_per_second != bits_per_second) {
-    object("runs at " + std::to_string(controller.bits_per_second) + " bit/s, and the rig says " + rate, anew);
+    object("runs at " + std::to_string(controller.bits_per_second) + " bit/s, and the rig says " + rate, anew, true);
   }
   if (controller.restart_ms == 0) {
     object("stays silent after bus-off", anew);
@@ -38,10 +38,11 @@ std::vector<std::string> objections(const CanInterface& interface, int bits_per_
   const std::string counters = std::to_string(controller.transmit_errors) + " transmit errors, " +
                                std::to_string(controller.receive_errors) + " receive errors";
   if (controller.state == CanState::bus_off) {
-    object("is bus-off", controller.restart_ms == 0 ? "ip link set " + name + " type can restart"
-                                                    : "both ends terminated by 120 Ohm, CAN-H and CAN-L not exchanged, "
-                                                      "every node at " +
-                                                          rate + " bit/s");
+    const bool stays = controller.restart_ms == 0;
+    object("is bus-off",
+           stays ? "ip link set " + name + " type can restart"
+                 : "both ends terminated by 120 Ohm, CAN-H and CAN-L not exchanged, every node at " + rate + " bit/s",
+           stays);
   } else if (interface.up && controller.state != CanState::active) {
     object("counts " + counters, "both ends terminated by 120 Ohm, every node powered and at " + rate + " bit/s");
   }

@@ -66,7 +66,8 @@ Result<CanInterface> read_can_interface(const std::string& name) {
   }
   rtnl_link* found = nullptr;
   if (const int error = rtnl_link_get_kernel(socket.get(), 0, name.c_str(), &found); error < 0) {
-    return failed(name, "not found", "one that `ip link` lists");
+    return failed(name, "not found",
+                  "plug the adapter in and load its driver; `ip link show type can` lists what there is");
   }
   const Link link(found, &rtnl_link_put);
   const char* type = rtnl_link_get_type(link.get());

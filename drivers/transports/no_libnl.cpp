@@ -4,9 +4,9 @@
 namespace footlight::drivers {
 
 Result<CanInterface> read_can_interface(const std::string& name) {
-  return device_error("CAN interface \"" + name +
-                      "\": its settings are not known: this program was built without libnl-route (install "
-                      "libnl-route-3-dev and build again)");
+  return refusal("CAN interface \"" + name +
+                 "\": its settings are not known: this program was built without libnl-route (install "
+                 "libnl-route-3-dev and build again)");
 }
 
 }  // namespace footlight::drivers

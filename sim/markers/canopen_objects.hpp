@@ -17,13 +17,26 @@ enum class SdoAbort : std::uint32_t {
   command = 0x05040001,
   read_only = 0x06010002,
   no_object = 0x06020000,
+  not_mappable = 0x06040041,
+  too_long = 0x06040042,
   length = 0x06070010,
   no_sub_index = 0x06090011,
   value = 0x06090030,
+  state = 0x08000022,
+};
+
+/// What an SDO server reads and writes.
+class ObjectDictionary {
+ public:
+  virtual ~ObjectDictionary() = default;
+  /// @param bytes the object's value, least significant first, as long as its type
+  [[nodiscard]] virtual SdoAbort read(std::uint16_t index, std::uint8_t sub,
+                                      std::vector<std::uint8_t>& bytes) const = 0;
+  virtual SdoAbort write(std::uint16_t index, std::uint8_t sub, std::span<const std::uint8_t> bytes, Instant now) = 0;
 };
 
 /// The object dictionary of a marker (docs/wire-protocol.md, section 3): what SDO reads and writes.
-class CanopenObjects {
+class CanopenObjects final : public ObjectDictionary {
  public:
   struct Counters {
     std::uint16_t errors = 0;
@@ -34,9 +47,8 @@ class CanopenObjects {
   CanopenObjects(std::uint8_t id, std::uint32_t serial, NodeModel& model, const Counters& counters)
       : id_(id), serial_(serial), model_(model), counters_(counters) {}
 
-  /// @param bytes the object's value, least significant first, as long as its type
-  [[nodiscard]] SdoAbort read(std::uint16_t index, std::uint8_t sub, std::vector<std::uint8_t>& bytes) const;
-  SdoAbort write(std::uint16_t index, std::uint8_t sub, std::span<const std::uint8_t> bytes, Instant now);
+  [[nodiscard]] SdoAbort read(std::uint16_t index, std::uint8_t sub, std::vector<std::uint8_t>& bytes) const override;
+  SdoAbort write(std::uint16_t index, std::uint8_t sub, std::span<const std::uint8_t> bytes, Instant now) override;
 
  private:
   struct Value {

@@ -18,7 +18,7 @@ class SdoServer {
   using Bytes8 = std::span<const std::uint8_t, 8>;
 
   /// @param objects borrowed
-  SdoServer(std::uint8_t id, CanopenObjects& objects) : id_(id), objects_(objects) {}
+  SdoServer(std::uint8_t id, ObjectDictionary& objects) : id_(id), objects_(objects) {}
 
   /// @param request the data of a frame 0x600 + id  @return the answer; absent: the other side has aborted
   std::optional<drivers::CanFrame> answer(Bytes8 request, Instant now);
@@ -35,7 +35,7 @@ class SdoServer {
   drivers::CanFrame abort(SdoAbort code);
 
   std::uint8_t id_;
-  CanopenObjects& objects_;
+  ObjectDictionary& objects_;
   Transfer transfer_ = Transfer::none;
   std::uint16_t index_ = 0;
   std::uint8_t sub_ = 0;

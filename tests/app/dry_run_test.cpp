@@ -206,5 +206,74 @@ TEST(DryRun, TheSameSeedGivesTheSameTraceByteForByte) {
   EXPECT_NE(traces[0], traces[2]);
 }
 
+// ---- output modules on a CANopen bus (CiA 401)
+
+SmallShow show_on_modules() {
+  SmallShow small = random_show(16, 12, 60, 2, 4, 5);
+  small.rig = lamps_everywhere(small.show.stage.grid, {BusKind::can}, 500'000, 16);
+  OutputModule module;
+  module.name = "sixteen";
+  module.outputs = 16;
+  small.rig.buses[0].outputs = module;
+  return small;
+}
+
+TEST(DryRun, OutputModulesAreConfiguredAndShowEverySwitch) {
+  const DryRunReport report = report_of(show_on_modules(), "", 1);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+  EXPECT_EQ(report.late, 0U) << trouble(report);
+  EXPECT_EQ(report.buses[0].late_latches, 0U) << trouble(report);
+  EXPECT_TRUE(report.buses[0].complaints.empty());
+  EXPECT_GE(report.right_share, 0.99) << trouble(report);
+}
+
+TEST(DryRun, AnOutputModuleThatRebootsIsConfiguredAgain) {
+  const DryRunReport report = report_of(show_on_modules(), "reboot=2", 3);
+  EXPECT_EQ(report.wrong_final, 0U) << trouble(report);
+  EXPECT_EQ(report.wrong_after_recovery, 0U) << trouble(report);
+}
+
+TEST(DryRun, FaultsOnABusOfOutputModulesAreOverSoon) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const DryRunReport report = report_of(show_on_modules(), "loss=5%,corrupt=2%,bus-off=1,until=60%", seed);
+    EXPECT_EQ(report.wrong_after_recovery, 0U) << trouble(report);
+  }
+}
+
+// ---- supplies
+
+TEST(DryRun, ASupplyThatDimsAndStaggersIsToldWithItsLoad) {
+  SmallShow small = small_show();
+  small.rig.currents = {0.02, 0.02, 0.02, 0.01};
+  small.rig.supplies = {{"P1", 100, Supply::Overload::dim, milliseconds(20), {"rig.yaml", 3, 5}}};
+  for (Node& node : small.rig.nodes) node.supply = "P1";
+  const DryRunReport as_it_is = report_of(small, "", 1);
+  ASSERT_EQ(as_it_is.supplies.size(), 1U);
+  EXPECT_EQ(as_it_is.wrong_final, 0U) << trouble(as_it_is);
+  EXPECT_EQ(as_it_is.supplies[0].nodes, 12);
+  EXPECT_TRUE(as_it_is.supplies[0].dimmed.empty());
+  const double peak_a = as_it_is.supplies[0].peak_a;
+  ASSERT_GT(peak_a, 0.12) << "the nodes alone";
+  const double room_a = std::max(as_it_is.supplies[0].unguided_a, 0.12 + (peak_a - 0.12) / 2);
+  small.rig.supplies[0].limit_a = room_a;
+  const DryRunReport dimmed = report_of(small, "", 1);
+  EXPECT_EQ(dimmed.wrong_final, 0U) << trouble(dimmed);
+  EXPECT_LE(dimmed.supplies.at(0).peak_a, room_a + 1e-9);
+  EXPECT_EQ(dimmed.supplies[0].dimmed.empty(), room_a >= peak_a);
+}
+
+TEST(DryRun, AnOverloadedSupplyIsRefusedBeforeAnythingIsLit) {
+  SmallShow small = small_show();
+  small.rig.file = "rig.yaml";
+  small.rig.currents = {0.5, 0.5, 0.5, 0.01};
+  small.rig.supplies = {{"P1", 40, Supply::Overload::refuse, {}, {"rig.yaml", 3, 5}}};
+  for (Node& node : small.rig.nodes) node.supply = "P1";
+  const auto report = dry_run(small.show, small.plan, small.rig, {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::refused);
+  EXPECT_EQ(report.error().message.rfind("rig.yaml:3:5: error: supplies[0]: the supply \"P1\" ", 0), 0U)
+      << report.error().message;
+}
+
 }  // namespace
 }  // namespace footlight::app

@@ -33,10 +33,16 @@ class ProfileFile : public ::testing::Test {
 };
 
 TEST_F(ProfileFile, EveryShippedProfileIsRight) {
-  EXPECT_EQ(shipped_profiles(),
-            (std::vector<std::string>{"dmx-dimmer", "dmx-rgb", "footlight-marker", "pick-light", "relay-16"}));
+  EXPECT_EQ(shipped_profiles(), (std::vector<std::string>{"cia401-32do", "dmx-dimmer", "dmx-rgb", "footlight-marker",
+                                                          "pick-light", "relay-16"}));
   for (const std::string& name : shipped_profiles()) {
     Diagnostics diagnostics;
+    if (name.starts_with("cia401")) {
+      const auto module = read_output_module(find_profile(name, "/").value(), diagnostics);
+      ASSERT_TRUE(module) << diagnostics.to_text();
+      EXPECT_EQ(module->name, name);
+      continue;
+    }
     if (name.starts_with("dmx")) {
       const auto fixture = read_fixture(find_profile(name, "/").value(), diagnostics);
       ASSERT_TRUE(fixture) << diagnostics.to_text();
@@ -84,18 +90,18 @@ TEST_F(ProfileFile, ReadsStatesPaletteHealthAndQuirks) {
 }
 
 TEST_F(ProfileFile, RefusesUnknownKeysAndValuesWithAGuess) {
-  EXPECT_EQ(
-      messages("profile: 1\nname: lamp\nlook_regster: 7\nquirks: [no-broadcst]\n"),
-      "lamp.yaml:1:1: error: one of the keys look_register, look_coil, lamp_slots is missing (give exactly one of "
-      "them)\n"
-      "lamp.yaml:3:1: error: look_regster: unknown key (did you mean \"look_register\"?)\n"
-      "lamp.yaml:4:10: error: quirks[0]: \"no-broadcst\" is not a quirk that we know (did you mean "
-      "\"no-broadcast\"?)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_regster: 7\nquirks: [no-broadcst]\n"),
+            "lamp.yaml:1:1: error: one of the keys look_register, look_coil, lamp_slots, outputs is missing (give "
+            "exactly one of "
+            "them)\n"
+            "lamp.yaml:3:1: error: look_regster: unknown key (did you mean \"look_register\"?)\n"
+            "lamp.yaml:4:10: error: quirks[0]: \"no-broadcst\" is not a quirk that we know (did you mean "
+            "\"no-broadcast\"?)\n");
   EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 70000\n"),
             "lamp.yaml:3:16: error: look_register: \"70000\" is out of range (0 to 65535)\n");
   EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 7\nlook_coil: 0\n"),
             "lamp.yaml:4:1: error: look_coil: does not go with \"look_register\" (give exactly one of look_register, "
-            "look_coil, lamp_slots)\n");
+            "look_coil, lamp_slots, outputs)\n");
 }
 
 TEST_F(ProfileFile, OfADmxLampHasItsSlotsAndNothingElse) {
@@ -158,6 +164,77 @@ TEST_F(ProfileFile, RefusesKeysThatMeanNothingTogether) {
                      "palette: [{value: 0, colour: \"#000000\"}, {value: 1, colour: \"#FFFFFF\"}]\n"),
             "lamp.yaml:5:10: error: palette: a device with a palette has no look table to fill (give one of palette, "
             "states, look_table_register)\n");
+}
+
+class ModuleFile : public ProfileFile {
+ protected:
+  std::string module_messages(const std::string& yaml) {
+    folder_.write("module.yaml", yaml);
+    Diagnostics diagnostics;
+    EXPECT_EQ(read_output_module(folder_.path("module.yaml"), diagnostics), std::nullopt);
+    return folder_.without_folder(diagnostics.to_text());
+  }
+};
+
+TEST_F(ModuleFile, SaysWhatAModuleIsAndNeeds) {
+  folder_.write("module.yaml",
+                "profile: 1\nname: sixteen\noutputs: 16\non_failure: keep\nheartbeat: 500 ms\nsilence: 2 s\n"
+                "vendor: 0x195\nobjects: [{index: 0x2000, sub: 3, bits: 16, value: 0x1234}]\n"
+                "currents: {lamp: 60 mA, node: 30 mA}\n");
+  Diagnostics diagnostics;
+  std::optional<LampCurrents> currents;
+  const auto module = read_output_module(folder_.path("module.yaml"), diagnostics, &currents);
+  ASSERT_TRUE(module) << diagnostics.to_text();
+  EXPECT_EQ(module->outputs, 16);
+  EXPECT_EQ(module->bytes(), 2);
+  EXPECT_EQ(module->on_failure, OutputModule::OnFailure::keep);
+  EXPECT_EQ(module->heartbeat, milliseconds(500));
+  EXPECT_EQ(module->silence, milliseconds(2000));
+  EXPECT_EQ(module->vendor, 0x195U);
+  EXPECT_EQ(module->product, std::nullopt);
+  EXPECT_EQ(module->objects, (std::vector<ObjectValue>{{0x2000, 3, 2, 0x1234}}));
+  ASSERT_TRUE(currents);
+  EXPECT_DOUBLE_EQ(currents->red_a, 0.02);
+  EXPECT_DOUBLE_EQ(currents->node_a, 0.03);
+}
+
+TEST_F(ModuleFile, WrongValuesAreToldWithTheirPlace) {
+  EXPECT_EQ(module_messages("profile: 1\nname: odd\noutputs: 33\non_failure: off\nheartbeat: 10 ms\nlook_coil: 0\n"
+                            "objects:\n  - {index: 0x1400, sub: 1, bits: 32, value: 0}\n"
+                            "  - {index: 0x2000, bits: 8, value: 256}\n  - {index: 0x2000, bits: 24, value: 1}\n"),
+            "module.yaml:3:1: error: outputs: does not go with \"look_coil\" (give exactly one of look_register, "
+            "look_coil, lamp_slots, outputs)\n"
+            "module.yaml:3:10: error: outputs: \"33\" is out of range (1 to 32)\n"
+            "module.yaml:4:13: error: on_failure: \"off\" is not one of the choices (choices: dark, lit, keep)\n"
+            "module.yaml:5:12: error: heartbeat: \"10 ms\" is out of range (0.1 to 60 s)\n"
+            "module.yaml:6:1: error: look_coil: the key has no meaning here (a CANopen module has outputs)\n"
+            "module.yaml:8:13: error: objects[0].index: the controller writes this object by itself (leave it out)\n"
+            "module.yaml:9:37: error: objects[1].value: 256 does not fit into 8 bits (at most 255)\n"
+            "module.yaml:10:27: error: objects[2].bits: \"24\" is not one of the choices (choices: 8, 16, 32)\n");
+  EXPECT_EQ(module_messages("profile: 1\nname: odd\nlook_coil: 0\n"),
+            "module.yaml:1:1: error: outputs: this is the profile of a Modbus device (a CANopen module has outputs)\n");
+  EXPECT_EQ(module_messages("profile: 1\nname: odd\noutputs: 8\nlook_register: 0\n"),
+            "module.yaml:3:1: error: outputs: does not go with \"look_register\" (give exactly one of look_register, "
+            "look_coil, lamp_slots, outputs)\n"
+            "module.yaml:4:1: error: look_register: the key has no meaning here (a CANopen module has outputs)\n");
+}
+
+TEST_F(ModuleFile, OtherKindsHaveNoKeysOfAModule) {
+  EXPECT_EQ(
+      messages("profile: 1\nname: lamp\nlook_register: 0\nsilence: 1 s\n"),
+      "lamp.yaml:4:1: error: silence: the key has no meaning here (a Modbus device has look_register or look_coil)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\noutputs: 8\n"),
+            "lamp.yaml:3:1: error: outputs: this is the profile of a CANopen module (a Modbus device has look_register "
+            "or look_coil)\n");
+}
+
+TEST_F(ProfileFile, WhatALampTakesIsToldOnce) {
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 0\ncurrents: {red: 1 A, lamp: 60 mA}\n"),
+            "lamp.yaml:4:28: error: currents.lamp: the lamp's current is given twice, whole and by its colours (either "
+            "lamp, or red, green and blue)\n");
+  EXPECT_EQ(messages("profile: 1\nname: lamp\nlook_register: 0\ncurrents: {node: 60 mA}\n"),
+            "lamp.yaml:4:1: error: currents: nothing says what a lamp takes (red, green and blue, for example 20 mA "
+            "each, or lamp)\n");
 }
 
 }  // namespace

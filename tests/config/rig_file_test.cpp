@@ -192,7 +192,7 @@ TEST_F(RigFile, RefusesWrongBuses) {
                "  - {name: c, url: \"http://x\"}\n"
                "  - {name: d, kind: can, url: \"can://\"}\n"
                "  - {name: e, url: \"sim://rtu\", profile: nosuch}\n"
-               "  - {name: f, url: \"sim://can\", profile: footlight-marker}\n"),
+               "  - {name: f, url: \"sim://serial\", profile: footlight-marker}\n"),
       "rig.yaml:3:31: error: buses[0].url: \"serial:///dev/ttyS0\" is the URL of a serial bus, and this one is can "
       "(can://can0 or sim://can)\n"
       "rig.yaml:4:12: error: buses[1].name: a second bus has the name \"a\" (names of buses are unique)\n"
@@ -202,9 +202,9 @@ TEST_F(RigFile, RefusesWrongBuses) {
       "tcp://host:502, can://can0, dmx:///dev/..., sim://serial, sim://rtu, sim://tcp, sim://can, sim://dmx)\n"
       "rig.yaml:6:31: error: buses[3].url: \"can://\" is not the URL of a bus (can://can0 or sim://can)\n"
       "rig.yaml:7:42: error: buses[4].profile: there is no device profile \"nosuch\" (shipped profiles: "
-      "dmx-dimmer, dmx-rgb, footlight-marker, pick-light, relay-16; or a .yaml file beside the rig)\n"
-      "rig.yaml:8:33: error: buses[5].profile: the key has no meaning here (only Modbus devices and DMX "
-      "lamps have a profile)\n");
+      "cia401-32do, dmx-dimmer, dmx-rgb, footlight-marker, pick-light, relay-16; or a .yaml file beside the rig)\n"
+      "rig.yaml:8:36: error: buses[5].profile: the key has no meaning here (only Modbus devices, DMX lamps "
+      "and CANopen modules have a profile)\n");
 }
 
 TEST_F(RigFile, ALineHasItsCharactersAndADirection) {
@@ -336,6 +336,118 @@ TEST(SimulatedRig, HasAsManyBusesAsCarryWell) {
     for (std::size_t b = 0; b < nodes.size(); ++b) EXPECT_LE(nodes[b], nodes_that_carry_well(rig.buses[b].kind));
     expect_complete(rig, show, true);
   }
+}
+
+// ---- supplies
+
+constexpr const char* kCanAndSerial =
+    "rig: 1\n"
+    "buses:\n"
+    "  - {name: can-a, url: \"sim://can\", supply: P1}\n"
+    "  - {name: ser, url: \"sim://serial\"}\n";
+
+TEST_F(RigFile, ReadsSuppliesAndWhatLampsTake) {
+  const Rig rig =
+      right(std::string(kCanAndSerial) +
+            "supplies:\n"
+            "  - {name: P1, limit: 20 A, overload: dim, stagger: 20 ms}\n"
+            "  - {name: P2, limit: 500 mA, feeds: [{bus: ser, first: 2}, {bus: can-a, first: 1, last: 1}]}\n"
+            "lamps: {red: 20 mA, green: 18 mA, blue: 0.015 A, node: 10 mA}\n"
+            "nodes: [{bus: ser, address: 1, channels: A1, supply: P1}]\n"
+            "floor: {buses: [can-a, ser], channels_per_node: 8}\n");
+  ASSERT_EQ(rig.supplies.size(), 2U);
+  EXPECT_EQ(rig.supplies[0].name, "P1");
+  EXPECT_DOUBLE_EQ(rig.supplies[0].limit_a, 20);
+  EXPECT_EQ(rig.supplies[0].overload, Supply::Overload::dim);
+  EXPECT_EQ(rig.supplies[0].stagger, milliseconds(20));
+  EXPECT_DOUBLE_EQ(rig.supplies[1].limit_a, 0.5);
+  EXPECT_EQ(rig.supplies[1].overload, Supply::Overload::refuse);
+  EXPECT_DOUBLE_EQ(rig.currents.green_a, 0.018);
+  EXPECT_DOUBLE_EQ(rig.currents.blue_a, 0.015);
+  EXPECT_DOUBLE_EQ(rig.currents.node_a, 0.01);
+  for (const Node& node : rig.nodes) {
+    const bool on_can = node.bus == BusIndex(0);
+    const bool first = node.address == 1;
+    EXPECT_EQ(node.supply, on_can ? (first ? "P2" : "P1") : (first ? "P1" : "P2")) << node.name;
+  }
+  EXPECT_TRUE(diagnostics_.empty()) << diagnostics_.to_text();
+}
+
+TEST_F(RigFile, SaysWhatIsWrongWithSupplies) {
+  EXPECT_EQ(
+      messages("rig: 1\n"
+               "buses:\n"
+               "  - {name: can-a, url: \"sim://can\", supply: P3}\n"
+               "supplies:\n"
+               "  - {name: P1, limit: 0 A, overload: sometimes, stagger: 5}\n"
+               "  - {name: P1, limit: 20 V}\n"
+               "  - {name: P2, limit: 20 A, feeds: [{bus: can-b}, {bus: can-a, first: 7, last: 3}]}\n"
+               "lamps: {red: 20 mA, lamp: 60 mA}\n"
+               "nodes: [{bus: can-a, address: 1, channels: \"A1:H4\", supply: P}]\n"),
+      "rig.yaml:3:45: error: buses[0].supply: no supply has the name \"P3\" (did you mean \"P1\"?)\n"
+      "rig.yaml:5:23: error: supplies[0].limit: \"0 A\" is out of range (above 0, at most 1000 A)\n"
+      "rig.yaml:5:38: error: supplies[0].overload: \"sometimes\" is not one of the choices (choices: refuse, dim)\n"
+      "rig.yaml:5:58: error: supplies[0].stagger: \"5\" has no unit (write for example \"3.2 s\"; units: s, ms, min)\n"
+      "rig.yaml:6:12: error: supplies[1].name: a second supply has the name \"P1\" (the first stands in line 5)\n"
+      "rig.yaml:6:23: error: supplies[1].limit: \"V\" is not a unit of a current (write for example \"20 mA\"; units: "
+      "A, mA)\n"
+      "rig.yaml:7:43: error: supplies[2].feeds[0].bus: no bus has the name \"can-b\" (did you mean \"can-a\"?)\n"
+      "rig.yaml:7:80: error: supplies[2].feeds[1].last: the last address is 3, and the first 7 (at least 7)\n"
+      "rig.yaml:8:27: error: lamps.lamp: the lamp's current is given twice, whole and by its colours (either lamp, or "
+      "red, green and blue)\n"
+      "rig.yaml:9:61: error: nodes[0].supply: no supply has the name \"P\" (supplies: P1, P1, P2)\n");
+}
+
+TEST_F(RigFile, ANodeHangsOnOneSupply) {
+  EXPECT_EQ(messages(std::string(kCanAndSerial) +
+                     "supplies: [{name: P1, limit: 20 A}, {name: P2, limit: 2 A, feeds: [{bus: ser}]}]\n"
+                     "lamps: {lamp: 60 mA}\n"
+                     "nodes: [{bus: ser, address: 1, channels: \"A1:H4\", supply: P1}]\n"),
+            "rig.yaml:5:68: error: supplies[1].feeds[0]: the node \"ser-1\" hangs on the supply \"P1\" already (line 7 "
+            "says so)\n");
+}
+
+TEST_F(RigFile, AFeedWithoutNodesFeedsNothing) {
+  EXPECT_EQ(messages(std::string(kCanAndSerial) +
+                     "supplies: [{name: P1, limit: 20 A, feeds: [{bus: ser, first: 9, last: 12}]}]\n"
+                     "lamps: {lamp: 60 mA}\n"
+                     "nodes: [{bus: ser, address: 1, channels: \"A1:H4\"}]\n"),
+            "rig.yaml:5:50: error: supplies[0].feeds[0].bus: no node of the bus \"ser\" has an address from 9 to 12 "
+            "(addresses of its nodes)\n");
+}
+
+TEST_F(RigFile, SuppliesNeedToKnowWhatLampsTake) {
+  EXPECT_EQ(messages(std::string(kCanAndSerial) + "supplies: [{name: P1, limit: 20 A}]\n"
+                                                  "floor: {buses: [can-a, ser]}\n"),
+            "rig.yaml:5:1: warning: supplies: the node \"ser-1\" hangs on no supply (its current is counted nowhere)\n"
+            "rig.yaml:5:11: error: supplies: nothing says what the lamps of the bus \"can-a\" take (lamps: {red: 20 "
+            "mA, green: 20 mA, blue: 20 mA, node: 10 mA}, or currents in its profile)\n");
+  diagnostics_ = {};
+  EXPECT_EQ(messages(std::string(kCanAndSerial) + "supplies: [{name: P1, limit: 20 A}]\n"
+                                                  "lamps: {node: 5 mA}\n"
+                                                  "floor: {buses: [can-a, ser]}\n"),
+            "rig.yaml:6:1: error: lamps: nothing says what a lamp takes (red, green and blue, for example 20 mA each, "
+            "or lamp)\n");
+}
+
+TEST_F(RigFile, WarnsOfASupplyOfNobodyAndOfNodesOfNone) {
+  EXPECT_EQ(messages(std::string(kCanAndSerial) + "supplies: [{name: P1, limit: 20 A}, {name: P2, limit: 2 A}]\n"
+                                                  "lamps: {lamp: 60 mA}\n"
+                                                  "floor: {buses: [can-a, ser], channels_per_node: 8}\n"),
+            "rig.yaml:5:1: warning: supplies: the node \"ser-1\" hangs on no supply (its current is counted nowhere)\n"
+            "rig.yaml:5:37: warning: supplies[1]: nothing hangs on the supply \"P2\" (feeds, or supply of nodes and "
+            "buses)\n");
+}
+
+TEST_F(RigFile, ACanBusOfModulesHasAProfile) {
+  const Rig rig =
+      right("rig: 1\nbuses: [{name: can-a, url: \"can://can0\", profile: cia401-32do}]\nfloor: {buses: can-a}\n");
+  ASSERT_TRUE(rig.buses[0].outputs.has_value());
+  EXPECT_EQ(rig.buses[0].outputs->outputs, 32);
+  EXPECT_EQ(files_.size(), 1U);
+  EXPECT_EQ(messages("rig: 1\nbuses: [{name: can-a, url: \"can://can0\", profile: relay-16}]\nfloor: {buses: can-a}\n"),
+            "/work/wt-power/drivers/profiles/relay-16.yaml:1:1: error: outputs: this is the profile of a Modbus device "
+            "(a CANopen module has outputs)\n");
 }
 
 }  // namespace

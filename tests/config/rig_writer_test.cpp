@@ -48,6 +48,9 @@ void expect_same(const Rig& a, const Rig& b) {
     EXPECT_EQ(a.buses[i].line, b.buses[i].line);
     EXPECT_EQ(a.buses[i].fixture, b.buses[i].fixture);
   }
+  ASSERT_EQ(a.supplies.size(), b.supplies.size());
+  for (std::size_t i = 0; i < a.supplies.size(); ++i) EXPECT_EQ(a.supplies[i].limit_a, b.supplies[i].limit_a);
+  EXPECT_EQ(a.currents, b.currents);
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
     EXPECT_EQ(a.nodes[i].name, b.nodes[i].name);
@@ -75,6 +78,10 @@ constexpr const char* kRig =
     "    direction: gpio\n"
     "    direction_line: gpiochip0:17\n"
     "  - {name: s, url: sim://serial, bits_per_second: 57600}\n"
+    "supplies:\n"
+    "  - {name: P1, limit: 20 A, overload: dim}\n"
+    "  - {name: P 2, limit: 500 mA, stagger: 20 ms, feeds: [{bus: s, first: 2, last: 2}]}\n"
+    "lamps: {lamp: 60 mA, node: 5 mA}\n"
     "nodes:\n"
     "  - {name: \"7\", bus: r, address: 9, channels: [A1:B2, unused, H6], supply: \"P 2\"}\n"
     "  - {bus: s, address: 2, channels: [{wearable: W 1}, C3, D3, E3]}\n"

@@ -169,7 +169,7 @@ Tally drive(const sim::Faults& faults, std::uint64_t seed, std::uint64_t request
   CountingPort port(line.port());
   std::vector<NodeAddress> nodes;
   for (std::size_t slot = 0; slot < kNodes; ++slot) nodes.push_back(address_of(slot));
-  drivers::ModbusDriver driver(port, drivers::modbus::footlight_marker(), nodes, kPlanByte);
+  drivers::ModbusDriver driver(port, footlight_marker_profile(), nodes, kPlanByte);
   Tally tally;
   Judge judge(line, tally);
   Rng rng(seed + 2);
@@ -244,9 +244,8 @@ TEST(ModbusRecovery, WhoTakesEveryReceiptForHisOwnIsDeceivedOnTheSameLine) {
     const auto sequence = static_cast<Sequence>(i % drivers::kLastSequence + 1);
     const auto slot = static_cast<std::size_t>(i % kNodes);
     line.watch(slot);
-    line.port().submit(drivers::modbus::preload(drivers::modbus::footlight_marker(),
-                                                static_cast<std::uint8_t>(slot + 1), kPlanByte, sequence,
-                                                looks_of(slot, sequence))
+    line.port().submit(drivers::modbus::preload(footlight_marker_profile(), static_cast<std::uint8_t>(slot + 1),
+                                                kPlanByte, sequence, looks_of(slot, sequence))
                            .front());
     while (line.port().busy()) line.advance(kNever);
     const auto reply = line.port().poll();
@@ -301,7 +300,7 @@ TEST(ModbusRecovery, ALateServerOnARealLineDeceivesNobody) {
   const LateServer server(terminal);
   const SteadyClock clock;
   drivers::EventLog log;
-  drivers::ModbusDriver driver(**port, drivers::modbus::footlight_marker(), {address_of(0)}, kPlanByte);
+  drivers::ModbusDriver driver(**port, footlight_marker_profile(), {address_of(0)}, kPlanByte);
   const auto preload = [&](Sequence sequence) {
     SendStatus status = SendStatus::busy;
     while (status == SendStatus::busy) {

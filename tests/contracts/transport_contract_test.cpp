@@ -258,7 +258,7 @@ TEST_P(ModbusPortContract, AnUnpluggedPortIsDownSaysWhyAndComesBack) {
 TEST_P(ModbusPortContract, TheDriverLightsBothMarkersAndReadsThemBack) {
   const NodeAddress one{NodeIndex(0), kFirstMarker, kChannels};
   const NodeAddress two{NodeIndex(1), kSecondMarker, kChannels};
-  drivers::ModbusDriver driver(port(), drivers::modbus::footlight_marker(), {one, two}, 0xA3);
+  drivers::ModbusDriver driver(port(), footlight_marker_profile(), {one, two}, 0xA3);
   drivers::EventLog log;
   Instant now = kStart;
   const auto finish = [&] {

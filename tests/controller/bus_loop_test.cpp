@@ -42,8 +42,10 @@ std::size_t switch_at(const CueSchedule& schedule, Instant show_time) {
 
 /// A loop on a fake bus; the show runs by the clock.
 struct Bench {
-  Bench(CueSchedule plan, std::size_t nodes, bool canopen)
-      : schedule(std::move(plan)), driver(nodes, kChannels, canopen), loop(schedule, addresses(nodes), driver) {}
+  Bench(CueSchedule plan, std::size_t nodes, bool canopen, const std::vector<SwitchOn>& switch_on = {})
+      : schedule(std::move(plan)),
+        driver(nodes, kChannels, canopen),
+        loop(schedule, addresses(nodes), driver, switch_on) {}
 
   static std::vector<drivers::NodeAddress> addresses(std::size_t nodes) {
     std::vector<drivers::NodeAddress> list;
@@ -178,6 +180,67 @@ TEST_P(AnyBus, LostAnswersCostRepeatsAndNoLamp) {
   }
   EXPECT_GT(bench.loop.counters().misses, 0U);
   EXPECT_TRUE(bench.driver.broken_rules.empty());
+}
+
+/// Turns of nodes that all hang on one supply.
+std::vector<SwitchOn> one_by_one(std::size_t nodes, Duration stagger) {
+  std::vector<SwitchOn> list;
+  for (std::size_t n = 0; n < nodes; ++n) list.push_back({0, static_cast<Duration::rep>(n) * stagger, stagger});
+  return list;
+}
+
+/// When each node was preloaded first, from `since` on; kNever: not at all.
+std::vector<Instant> first_preloads(const Bench& bench, std::size_t nodes, Instant since) {
+  std::vector<Instant> first(nodes, kNever);
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind != Kind::preload || operation.at < since) continue;
+    first[operation.node.at()] = std::min(first[operation.node.at()], operation.at);
+  }
+  return first;
+}
+
+TEST_P(AnyBus, NodesOfAStaggeredSupplyAreLitOneAfterTheOther) {
+  Bench bench(schedule_of(4, 3, every_switch), 4, GetParam(), one_by_one(4, milliseconds(150)));
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(1500));
+  const auto first = first_preloads(bench, 4, kStart);
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Instant turn = kStart + static_cast<Duration::rep>(n) * milliseconds(150);
+    EXPECT_GE(first[n], turn) << n;
+    EXPECT_LT(first[n], turn + milliseconds(120)) << n;
+  }
+  EXPECT_EQ(bench.wrong(4, 0), Nobody{});
+  EXPECT_TRUE(bench.loop.settled());
+  EXPECT_TRUE(bench.driver.broken_rules.empty());
+}
+
+TEST_P(AnyBus, ACueWhileNodesAreSwitchedOnComesToAllThatAreLitAtItsMoment) {
+  // The last of the four has its turn after the second switch.
+  Bench bench(schedule_of(4, 6, every_switch), 4, GetParam(), one_by_one(4, milliseconds(400)));
+  bench.run_to_switch(1);
+  const Instant due = bench.schedule.switches()[1].time;
+  bench.run_until(due + milliseconds(2));
+  EXPECT_TRUE(bench.right(0, 1));
+  EXPECT_TRUE(bench.right(1, 1));
+  EXPECT_TRUE(bench.right(2, 1)) << "its turn came before the switch";
+  EXPECT_FALSE(bench.right(3, 1)) << "its turn has not come";
+  EXPECT_EQ(bench.loop.counters().worst_lateness, Duration{});
+  bench.run_to_switch(4);
+  EXPECT_EQ(bench.wrong(4, 3), Nobody{});
+}
+
+TEST_P(AnyBus, ASupplyThatComesBackIsLoadedOneNodeAfterTheOther) {
+  Bench bench(schedule_of(4, 3, every_switch), 4, GetParam(), one_by_one(4, milliseconds(150)));
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(1500));
+  const Instant off = bench.now;
+  for (std::size_t n = 0; n < 4; ++n) bench.driver.reboot(n);
+  bench.run_until(off + milliseconds(3000));
+  auto first = first_preloads(bench, 4, off);
+  std::ranges::sort(first);
+  for (std::size_t n = 1; n < 4; ++n)
+    EXPECT_GE(first[n] - first[n - 1], milliseconds(135)) << n << ": less an operation under way";
+  EXPECT_EQ(bench.wrong(4, 0), Nobody{});
 }
 
 TEST_P(AnyBus, ARebootedNodeIsNoticedAndLitAgainWithItsLookTable) {

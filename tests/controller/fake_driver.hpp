@@ -65,6 +65,12 @@ class FakeDriver final : public drivers::Driver {
         std::ranges::count_if(log, [&](const Operation& operation) { return operation.kind == kind; }));
   }
 
+  /// Lamps are on or off.
+  bool relays = false;
+  [[nodiscard]] Look shown(const Look& look) const override {
+    return relays && look.brightness > 0 ? Look{{255, 255, 255}, Effect::steady, 255} : look;
+  }
+
   [[nodiscard]] std::string_view language() const override { return "fake"; }
   [[nodiscard]] drivers::Capabilities capabilities() const override {
     drivers::Capabilities can;

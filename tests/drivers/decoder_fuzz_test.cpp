@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random input into every decoder: nothing crashes (the suite runs under the sanitizers, too) and nothing false is
 // told.
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "core/rng.hpp"
@@ -75,10 +77,10 @@ TEST(DecoderFuzz, RandomBytesNeverBreakCobs) {
   EXPECT_GT(decoded, 1'000U);
 }
 
-TEST(DecoderFuzz, RandomFramesOnACanBusAreHarmless) {
+void hear_random_frames(const std::optional<OutputModule>& modules) {
   Rng rng(3);
   RecordingCan port;
-  CanopenDriver driver(port, {kOne, kTwo});
+  CanopenDriver driver(port, {kOne, kTwo}, modules);
   EventLog log;
   Instant now = kStart;
   driver.start(now);
@@ -101,10 +103,18 @@ TEST(DecoderFuzz, RandomFramesOnACanBusAreHarmless) {
   EXPECT_GT(log.events.size(), 2'000U);
 }
 
+TEST(DecoderFuzz, RandomFramesOnACanBusAreHarmless) { hear_random_frames({}); }
+
+TEST(DecoderFuzz, RandomFramesOnABusOfOutputModulesAreHarmless) {
+  OutputModule module;
+  module.outputs = 32;
+  hear_random_frames(module);
+}
+
 TEST(DecoderFuzz, RandomRepliesOnAModbusLineAreHarmless) {
   Rng rng(4);
   RecordingModbus port;
-  ModbusDriver driver(port, modbus::footlight_marker(), {kOne, kTwo}, 0);
+  ModbusDriver driver(port, footlight_marker_profile(), {kOne, kTwo}, 0);
   EventLog log;
   std::size_t right = 0;
   Instant now = kStart;

@@ -98,7 +98,7 @@ TEST(Registry, PreflightNamesTheBusAndKindsWithoutOneHaveNothingToSay) {
   bus.url = "can://can77";
   const auto found = preflight(bus);
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].rfind("bus \"front\": CAN interface \"can77\": ", 0), 0U) << found[0];
+  EXPECT_EQ(found[0].text.rfind("bus \"front\": CAN interface \"can77\": ", 0), 0U) << found[0].text;
   bus.url = "serial:///dev/null";
   EXPECT_TRUE(preflight(bus).empty());
 }

@@ -232,7 +232,7 @@ std::vector<std::uint8_t> rtu_body(const ModbusRequest& request) {
 TEST(ModbusGolden, EveryRequestIsAsDocumented) {
   const Golden golden("modbus.txt");
   RecordingModbus port;
-  ModbusDriver driver(port, modbus::footlight_marker(), {kSeven, kNine}, kPlanByte);
+  ModbusDriver driver(port, footlight_marker_profile(), {kSeven, kNine}, kPlanByte);
   EventLog log;
   const auto wire = [&](SendStatus status) {
     EXPECT_EQ(status, SendStatus::accepted);

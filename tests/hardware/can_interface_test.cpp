@@ -54,7 +54,9 @@ bool becomes(CanPort& port, CanState state) {
 std::vector<std::string> objections_to(const std::string& interface) {
   const auto settings = drivers::read_can_interface(interface);
   EXPECT_TRUE(settings) << settings.error().message;
-  return drivers::objections(*settings, 500'000);
+  std::vector<std::string> texts;
+  for (const drivers::Objection& objection : drivers::objections(*settings, 500'000)) texts.push_back(objection.text);
+  return texts;
 }
 
 /// Two controllers on one bus.

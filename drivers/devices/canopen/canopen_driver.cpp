@@ -28,7 +28,12 @@ constexpr std::uint8_t kPreOperational = 127;
 
 }  // namespace
 
-CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes) : port_(port) {
+CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes,
+                             const std::optional<OutputModule>& modules)
+    : port_(port) {
+  if (modules) setup_.emplace(*modules, nodes);
+  lit_.fill(true);
+  lit_[kDark] = false;
   by_address_.fill(-1);
   for (const NodeAddress& address : nodes) {
     FL_CHECK(address.address >= 1 && address.address <= canopen::kLastNode);
@@ -43,35 +48,47 @@ CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& node
 Capabilities CanopenDriver::capabilities() const {
   Capabilities can;
   can.sequenced_latch = false;
-  can.pushes_status = true;
+  can.pushes_status = !setup_;
+  if (!setup_) return can;
+  can.readback = false;
+  can.proves_looks = false;
+  can.lease = setup_->module().on_failure != OutputModule::OnFailure::keep;
   return can;
 }
 
 Duration CanopenDriver::preload_time(int channels) const {
+  if (setup_) return port_.wire_time(canopen::outputs(setup_->module(), 1, {}));
   const std::vector<LookIndex> looks(static_cast<std::size_t>(channels));
   Duration sum{};
   for (const CanFrame& frame : canopen::preload(1, looks)) sum += port_.wire_time(frame);
   return sum;
 }
 
-Duration CanopenDriver::status_time() const { return port_.wire_time(canopen::status_pdo_shape()); }
+Duration CanopenDriver::status_time() const { return setup_ ? Duration{} : frame_time(); }
 
-Duration CanopenDriver::latch_time() const { return port_.wire_time(canopen::sync(kLastSequence)); }
+Duration CanopenDriver::latch_time() const {
+  return port_.wire_time(setup_ ? canopen::plain_sync() : canopen::sync(kLastSequence));
+}
 
 Duration CanopenDriver::heartbeat_time() const { return port_.wire_time(canopen::controller_heartbeat()); }
 
 Duration CanopenDriver::node_heartbeats_time() const {
-  const auto periods = static_cast<Duration::rep>(kNodeHeartbeatPeriod / kHeartbeatPeriod);
-  return static_cast<Duration::rep>(nodes_.size()) * heartbeat_time() / periods;  // of the same length
+  const Duration period = setup_ ? setup_->module().heartbeat : kNodeHeartbeatPeriod;
+  const double in_one_period = static_cast<double>(kHeartbeatPeriod.count()) / static_cast<double>(period.count());
+  const auto all = static_cast<Duration::rep>(nodes_.size()) * heartbeat_time();  // of the same length
+  return Duration(static_cast<Duration::rep>(static_cast<double>(all.count()) * in_one_period));
 }
 
 Duration CanopenDriver::upload_time() const {
   Duration sum{};
+  if (setup_) return sum;
   for (const CanFrame& frame : canopen::look_entry(1, Look{})) sum += port_.wire_time(frame);
   return sum;
 }
 
 bool CanopenDriver::ready() const {
+  // A module's preload has no receipt and no answer to its latch: here nothing else may stand before the latch.
+  if (setup_ && !down() && port_.queued() > 0) return false;
   return down() ||
          (outbox_.empty() && !service_ && port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
 }
@@ -79,10 +96,15 @@ bool CanopenDriver::ready() const {
 SendStatus CanopenDriver::start(Instant now) {
   if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
-  const SendStatus status = hand_over(canopen::nmt(canopen::NmtCommand::start, 0));
+  // Modules are started one by one, when they are set up.
+  const auto command = setup_ ? canopen::NmtCommand::pre_operational : canopen::NmtCommand::start;
+  const SendStatus status = hand_over(canopen::nmt(command, 0));
   if (status != SendStatus::accepted) return status;
   started_ = true;
-  for (NodeState& node : nodes_) node.heard = now;
+  for (NodeState& node : nodes_) {
+    node.heard = now;
+    if (setup_) setup_->want(node.address.unit(), now);
+  }
   return status;
 }
 
@@ -92,7 +114,19 @@ SendStatus CanopenDriver::preload(const NodeAddress& node, Sequence sequence, st
   FL_CHECK(looks.size() == node.channels);
   if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
-  for (const CanFrame& frame : canopen::preload(node.unit(), looks)) outbox_.push_back(frame);
+  if (setup_) {
+    if (!setup_->is_set_up(node.unit())) {
+      DeviceEvent event{DeviceEvent::Kind::rejected, node.node, sequence};
+      event.again = setup_->refuses(node.unit()) ? DeviceEvent::Again::never : DeviceEvent::Again::later;
+      told_later_.push_back(event);
+      return SendStatus::accepted;
+    }
+    std::vector<bool> lit;
+    for (const LookIndex look : looks) lit.push_back(lit_[look]);
+    outbox_.push_back(canopen::outputs(setup_->module(), node.unit(), lit));
+  } else {
+    for (const CanFrame& frame : canopen::preload(node.unit(), looks)) outbox_.push_back(frame);
+  }
   leaving_ = Preload{node.node, sequence, 0};
   unlatched_ = true;
   pump();
@@ -122,6 +156,10 @@ SendStatus CanopenDriver::ask(const NodeAddress& node, Instant now) {
 SendStatus CanopenDriver::upload_look(LookIndex index, const Look& look, Instant /*now*/) {
   if (down()) return SendStatus::down;
   if (!ready()) return SendStatus::busy;
+  if (setup_) {
+    lit_[index] = index != kDark && look.brightness > 0 && look.colour != Colour{};
+    return SendStatus::accepted;
+  }
   for (const CanFrame& frame : canopen::look_entry(index, look)) outbox_.push_back(frame);
   pump();
   if (!down()) return SendStatus::accepted;
@@ -138,10 +176,12 @@ SendStatus CanopenDriver::hand_over(const CanFrame& frame) {
 SendStatus CanopenDriver::send_sync(Sequence sequence, Instant now) {
   if (down()) return SendStatus::down;
   if (!outbox_.empty()) return SendStatus::busy;
-  const SendStatus status = hand_over(canopen::sync(sequence));
+  // Modules know no counter, and one that they do not expect is an error for them (CiA 301, EMCY 0x8240).
+  const SendStatus status = hand_over(setup_ ? canopen::plain_sync() : canopen::sync(sequence));
   if (status != SendStatus::accepted) return status;
   last_sequence_ = sequence;
   unlatched_ = false;
+  if (setup_) return status;
   for (NodeState& node : nodes_) node.awaits_status = true;
   const auto frames = static_cast<Duration::rep>(port_.queued() + nodes_.size());
   status_deadline_ = now + frames * status_time() + kLongestTurnaround + kMargin;
@@ -172,14 +212,19 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
     ++heard;
     hear(frame, now, events);
   }
+  for (const DeviceEvent& event : told_later_) events.on_event(event);
+  told_later_.clear();
+  if (setup_) set_up_on(now, events);
   serve_on(now, events);
   pump();
   tell_preloads(events);
-  tell_bus(events);
+  tell_bus(now, events);
   Instant next = tell_missed(now, events);
   const bool starting = std::any_of(nodes_.begin(), nodes_.end(), [](const NodeState& node) { return node.start_due; });
   const bool leaving = !outbox_.empty() || port_.queued() + kMostFrames > kWindow || !on_the_way_.empty();
-  if (!down() && (leaving || starting)) next = std::min(next, now + status_time());
+  const bool not_ready = setup_ && port_.queued() > 0;
+  if (!down() && (leaving || starting || not_ready)) next = std::min(next, now + frame_time());
+  if (setup_ && !down() && started_) next = std::min(next, std::max(now, setup_->next()));
   if (service_) next = std::min(next, service_->deadline);
   if (down() || port_.queued() > 0) next = std::min(next, now + kLookAtBus);
   return heard == kFramesPerStep ? now : next;
@@ -187,6 +232,7 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
 
 void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) {
   hear_sdo(frame, now);
+  if (setup_) setup_->hear(frame, now);
   const canopen::Heard heard = canopen::decode(frame);
   const auto visit = [&](const auto& message) {
     if constexpr (!std::is_same_v<std::decay_t<decltype(message)>, std::monostate>) {
@@ -194,7 +240,7 @@ void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) 
       if (node == nullptr) return;
       node->heard = now;
       if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::StatusPdo>) {
-        hear_status(*node, message, events);
+        if (!setup_) hear_status(*node, message, events);  // of a module it says what its inputs are
       } else if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::NodeHeartbeat>) {
         hear_heartbeat(*node, message.state, events);
       } else if (message.code != 0) {
@@ -226,10 +272,16 @@ void CanopenDriver::hear_heartbeat(NodeState& node, std::uint8_t state, EventSin
   if (state == kBootUp || (state == kPreOperational && node.operational)) {
     node.boots.reset();
     events.on_event({DeviceEvent::Kind::booted, node.address.node});
+    if (setup_ && started_) setup_->want(node.address.unit(), node.heard);
   }
   node.operational = state == kOperational;
   const bool waits = state == kBootUp || state == kStopped || state == kPreOperational;
-  node.start_due = started_ && waits;
+  if (!setup_) {
+    node.start_due = started_ && waits;
+  } else if (started_ && waits && setup_->is_set_up(node.address.unit())) {
+    node.start_due = true;  // its start was lost, and so was what it has been sent since
+    events.on_event({DeviceEvent::Kind::missed, node.address.node});
+  }
 }
 
 void CanopenDriver::tell_preloads(EventSink& events) {
@@ -241,7 +293,7 @@ void CanopenDriver::tell_preloads(EventSink& events) {
   }
 }
 
-void CanopenDriver::tell_bus(EventSink& events) {
+void CanopenDriver::tell_bus(Instant now, EventSink& events) {
   if (down()) {
     if (leaving_) on_the_way_.push_back(*leaving_);
     for (const Preload& preload : on_the_way_) {
@@ -250,6 +302,7 @@ void CanopenDriver::tell_bus(EventSink& events) {
     leaving_.reset();
     on_the_way_.clear();
     outbox_.clear();
+    if (setup_) setup_->abandon(now);
   }
   if (down() == down_told_) return;
   down_told_ = down();
@@ -262,18 +315,19 @@ Instant CanopenDriver::tell_missed(Instant now, EventSink& events) {
   const bool overdue = now >= status_deadline_;
   if (overdue) status_deadline_ = kNever;
   Instant next = status_deadline_;
+  const Duration silence = setup_ ? std::max(kSilence, 5 * setup_->module().heartbeat / 2) : kSilence;
   for (NodeState& node : nodes_) {
     if (overdue && node.awaits_status) {
       node.awaits_status = false;
       events.on_event({DeviceEvent::Kind::missed, node.address.node, last_sequence_});
     }
     if (!started_) continue;
-    if (now - node.heard >= kSilence) {
+    if (now - node.heard >= silence) {
       node.heard = now;  // the next miss is due after as long a silence again
       node.operational = false;
       events.on_event({DeviceEvent::Kind::missed, node.address.node});
     }
-    next = std::min(next, node.heard + kSilence);
+    next = std::min(next, node.heard + silence);
   }
   return next;
 }

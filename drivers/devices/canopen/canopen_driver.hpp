@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "drivers/devices/canopen/canopen_frames.hpp"
+#include "drivers/devices/canopen/module_setup.hpp"
 #include "drivers/devices/canopen/sdo_client.hpp"
 #include "drivers/driver.hpp"
 
@@ -20,16 +22,25 @@ namespace footlight::drivers {
 /// between a preload and its latch, where it would be the latch. Nodes that boot or that wait in pre-operational are
 /// started by the driver itself. A node is `missed` when it leaves a SYNC unanswered and for each 2.5 s of its silence.
 ///
+/// A bus of output modules (CiA 401) is another matter: each module is configured by SDO (ModuleSetup) before it is
+/// started, and again after it has booted; until then its preloads are `rejected` for later, and for ever once it has
+/// refused an object (complaints()). RPDO1 preloads and SYNC latches as well, but nothing proves what is shown.
+///
 /// A bus on which nothing leaves is down (CanState::stalled and beyond; the event's detail is the state). Then nothing
 /// but heartbeats is put on it, to find out when it is back: what stands in a queue for so long comes too late, and of
 /// a heartbeat that does no harm.
 class CanopenDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver
-  CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes);
+  /// @param modules absent: our own markers
+  CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes, const std::optional<OutputModule>& modules = {});
 
   [[nodiscard]] std::string_view language() const override { return "canopen"; }
   [[nodiscard]] Capabilities capabilities() const override;
+  [[nodiscard]] std::string assumption() const override;
+  [[nodiscard]] std::vector<std::string> complaints() const override;
+  [[nodiscard]] Look shown(const Look& look) const override;
+  [[nodiscard]] Look unguided() const override;
   [[nodiscard]] Duration preload_time(int channels) const override;
   /// One node's TPDO: a single SYNC asks all of them.
   [[nodiscard]] Duration status_time() const override;
@@ -78,6 +89,9 @@ class CanopenDriver final : public Driver {
     std::uint64_t last_frame = 0;  ///< count of frames handed to the port, with its own last one
   };
 
+  void set_up_on(Instant now, EventSink& events);
+  /// Of one node's answer, or of any frame of its length.
+  [[nodiscard]] Duration frame_time() const { return port_.wire_time(canopen::status_pdo_shape()); }
   [[nodiscard]] bool down() const { return port_.state() >= CanState::stalled; }
   SendStatus hand_over(const CanFrame& frame);
   SendStatus send_sync(Sequence sequence, Instant now);
@@ -86,7 +100,7 @@ class CanopenDriver final : public Driver {
   void hear_status(NodeState& node, const canopen::StatusPdo& status, EventSink& events);
   void hear_heartbeat(NodeState& node, std::uint8_t state, EventSink& events);
   void tell_preloads(EventSink& events);
-  void tell_bus(EventSink& events);
+  void tell_bus(Instant now, EventSink& events);
   Instant tell_missed(Instant now, EventSink& events);
   SendStatus serve(Task task, std::uint16_t address, std::vector<canopen::ObjectPlace> places,
                    std::vector<std::uint8_t> written, Instant now);
@@ -104,6 +118,9 @@ class CanopenDriver final : public Driver {
   std::uint64_t handed_over_ = 0;
   canopen::SdoClient sdo_;
   std::optional<Service> service_;
+  std::optional<canopen::ModuleSetup> setup_;  ///< of output modules
+  std::array<bool, 256> lit_{};                ///< looks that light an output
+  std::vector<DeviceEvent> told_later_;        ///< in the next step
   Sequence last_sequence_ = 0;
   bool started_ = false;
   bool unlatched_ = false;  ///< a preload has been sent since the last SYNC

@@ -42,6 +42,8 @@ CanFrame nmt(NmtCommand command, std::uint8_t node) {
 
 CanFrame sync(Sequence counter) { return frame_of(kSync, {counter}); }
 
+CanFrame plain_sync() { return frame_of(kSync, {}); }
+
 CanFrame controller_heartbeat() { return frame_of(kControllerHeartbeat, {kOperational}); }
 
 std::vector<CanFrame> preload(std::uint8_t node, std::span<const LookIndex> looks) {

@@ -28,6 +28,8 @@ enum class NmtCommand : std::uint8_t {
 /// @param node 1..126, or 0 for all
 [[nodiscard]] CanFrame nmt(NmtCommand command, std::uint8_t node);
 [[nodiscard]] CanFrame sync(Sequence counter);
+/// Without a counter, as nodes expect it that have no object 0x1019.
+[[nodiscard]] CanFrame plain_sync();
 [[nodiscard]] CanFrame controller_heartbeat();
 /// RPDO1..4 as needed. @param looks 1..32, channel 0 first
 [[nodiscard]] std::vector<CanFrame> preload(std::uint8_t node, std::span<const LookIndex> looks);

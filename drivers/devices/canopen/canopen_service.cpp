@@ -82,6 +82,7 @@ void note(ServiceAnswer& answer, ObjectPlace place, const std::vector<std::uint8
 std::string_view CanopenDriver::refusal(Task task) const {
   if (task == Task::set_address) return "the id of a CANopen node is set on the device";
   if (task == Task::clock) return "CANopen markers keep no show time";
+  if (task == Task::identify && setup_) return "a module of outputs cannot show which one it is; its lamps can be lit";
   return {};
 }
 
@@ -94,6 +95,7 @@ SendStatus CanopenDriver::identify(std::uint16_t address, bool on, Instant now) 
 }
 
 SendStatus CanopenDriver::ask_health(std::uint16_t address, Instant now) {
+  if (setup_) return serve(Task::health, address, {kErrorRegister}, {}, now);
   return serve(Task::health, address, {kErrorRegister, kErrors, kBoots}, {}, now);
 }
 
@@ -101,7 +103,7 @@ SendStatus CanopenDriver::serve(Task task, std::uint16_t address, std::vector<Ob
                                 std::vector<std::uint8_t> written, Instant now) {
   FL_CHECK(address >= 1 && address <= canopen::kLastNode);
   if (down()) return SendStatus::down;
-  if (!ready()) return SendStatus::busy;
+  if (!ready() || (setup_ && setup_->under_way())) return SendStatus::busy;
   Service service;
   service.answer = ServiceAnswer{task, Kind::silent, address, 0, {}, {}};
   service.places = std::move(places);

@@ -25,6 +25,8 @@ class DmxDriver final : public Driver {
   [[nodiscard]] std::string_view language() const override { return "dmx-usb-pro"; }
   [[nodiscard]] Capabilities capabilities() const override;
   [[nodiscard]] std::string assumption() const override;
+  [[nodiscard]] Look shown(const Look& look) const override { return dmx::shown(fixture_, look); }
+  [[nodiscard]] Look unguided() const override { return {{}, Effect::steady, 0}; }
   [[nodiscard]] Duration preload_time(int /*channels*/) const override { return {}; }  // nothing goes out
   [[nodiscard]] Duration status_time() const override { return {}; }
   /// The message to the widget, and one packet on the line.

@@ -60,6 +60,15 @@ double share_of(Effect effect, Instant now) {
   return 1;
 }
 
+Look shown(const DmxFixture& fixture, const Look& look) {
+  const bool coloured = std::ranges::any_of(fixture.slots, [](DmxSlot slot) {
+    return slot == DmxSlot::red || slot == DmxSlot::green || slot == DmxSlot::blue;
+  });
+  if (coloured) return look;
+  const std::uint8_t white = std::max({look.colour.red, look.colour.green, look.colour.blue});
+  return {{white, white, white}, look.effect, look.brightness};
+}
+
 std::vector<std::uint8_t> levels(const DmxFixture& fixture, const Look& look, double share) {
   const bool has_dimmer = std::ranges::find(fixture.slots, DmxSlot::dimmer) != fixture.slots.end();
   const double light = look.brightness / 255.0 * share;

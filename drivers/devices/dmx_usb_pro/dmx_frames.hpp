@@ -29,6 +29,9 @@ inline constexpr int kFewestSlots = 24;  ///< of a packet that the widget sends
 /// The slots of one lamp. @param share of the full light
 [[nodiscard]] std::vector<std::uint8_t> levels(const DmxFixture& fixture, const Look& look, double share);
 
+/// What a lamp shows for a look: one of a dimmer alone is white, as bright as the brightest colour.
+[[nodiscard]] Look shown(const DmxFixture& fixture, const Look& look);
+
 /// Whether a lamp whose slots have these levels may show `look`, at whatever moment of its effect.
 [[nodiscard]] bool may_show(const DmxFixture& fixture, const Look& look, std::span<const std::uint8_t> levels);
 

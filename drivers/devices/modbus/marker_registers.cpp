@@ -54,11 +54,36 @@ constexpr long kOtherEffect = 3L * 255 * 255 + 1;  // more than any two colours 
 
 /// The code whose `distance_to` is least; the first of equals.
 template <class Code, class Distance>
-std::uint16_t nearest(const std::vector<Code>& codes, Distance distance_to) {
+const Code& nearest(const std::vector<Code>& codes, Distance distance_to) {
   FL_CHECK(!codes.empty());
-  const auto best = std::min_element(codes.begin(), codes.end(),
-                                     [&](const Code& a, const Code& b) { return distance_to(a) < distance_to(b); });
-  return static_cast<std::uint16_t>(best->value);
+  return *std::min_element(codes.begin(), codes.end(),
+                           [&](const Code& a, const Code& b) { return distance_to(a) < distance_to(b); });
+}
+
+const PaletteEntry& nearest_entry(const ModbusProfile& profile, const Look& look, bool dark) {
+  const auto wanted = dark ? std::array<int, 3>{} : light_of(look);
+  return nearest(profile.palette, [&](const PaletteEntry& entry) {
+    long sum = distance(wanted, light_of(entry.look));
+    if (!dark && entry.look.effect != look.effect) sum += kOtherEffect;
+    if (is_dark(entry.look) != dark) sum += 4 * kOtherEffect;
+    return sum;
+  });
+}
+
+const EffectCode& nearest_effect(const StateTable& states, const Look& look) {
+  return nearest(states.effects, [&](const EffectCode& code) {
+    return code.effect == look.effect ? 0 : code.effect == Effect::steady ? 1 : 2;
+  });
+}
+
+const ColourCode& nearest_colour(const StateTable& states, const Look& look) {
+  return nearest(states.colours,
+                 [&](const ColourCode& code) { return distance(light_of({look.colour}), light_of({code.colour})); });
+}
+
+const BrightnessCode& nearest_brightness(const StateTable& states, const Look& look) {
+  return nearest(states.brightnesses,
+                 [&](const BrightnessCode& code) { return std::abs(code.brightness - int{look.brightness}); });
 }
 
 }  // namespace
@@ -67,35 +92,22 @@ LookIndex value_of(const ModbusProfile& profile, LookIndex index, const Look& lo
   if (!profile.shows_own_numbers()) return index;
   const bool dark = index == kDark || is_dark(look);
   if (profile.palette.empty()) return dark ? LookIndex{0} : LookIndex{1};
-  const auto wanted = dark ? std::array<int, 3>{} : light_of(look);
-  return static_cast<LookIndex>(nearest(profile.palette, [&](const PaletteEntry& entry) {
-    long sum = distance(wanted, light_of(entry.look));
-    if (!dark && entry.look.effect != look.effect) sum += kOtherEffect;
-    if (is_dark(entry.look) != dark) sum += 4 * kOtherEffect;
-    return sum;
-  }));
+  return static_cast<LookIndex>(nearest_entry(profile, look, dark).value);
 }
 
-ModbusProfile footlight_marker() {
-  ModbusProfile profile;
-  profile.name = "footlight-marker";
-  profile.look_register = 0x0000;
-  profile.looks_per_register = 2;
-  profile.has_preload_sequence = true;
-  profile.latch_register = 0x0020;
-  profile.heartbeat_register = 0x0030;
-  profile.status_register = 0x0040;
-  profile.look_table_register = 0x0050;
-  profile.unique_id_register = 0x0060;
-  profile.identity_register = 0x0062;
-  profile.identity_registers = 8;
-  profile.identity_is_text = true;
-  profile.identify_register = 0x006A;
-  profile.readdress_register = 0x006C;
-  profile.health = {{"battery", 0x0048, 1, "%", false},
-                    {"supply", 0x0049, 0.001, "V", false},
-                    {"temperature", 0x004A, 0.1, "C", true}};
-  return profile;
+Look nearest_look(const ModbusProfile& profile, const Look& look) {
+  const bool dark = is_dark(look);
+  if (!profile.palette.empty()) return nearest_entry(profile, look, dark).look;
+  if (dark) return look;
+  if (profile.coils) return Look{{255, 255, 255}, Effect::steady, 255};
+  if (!profile.states) return look;
+  const StateTable& states = *profile.states;
+  Look shown{{255, 255, 255}, Effect::steady, 255};
+  if (states.effect_offset) shown.effect = nearest_effect(states, look).effect;
+  if (states.colour_offset) shown.colour = nearest_colour(states, look).colour;
+  if (states.brightness_offset)
+    shown.brightness = static_cast<std::uint8_t>(nearest_brightness(states, look).brightness);
+  return shown;
 }
 
 Requests preload(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, Sequence sequence,
@@ -171,21 +183,12 @@ Requests look_entry(const ModbusProfile& profile, std::uint8_t unit, LookIndex i
   const StateTable& states = *profile.states;
   const int first = states.first_register + (index - 1) * states.stride;
   std::vector<std::pair<int, std::uint16_t>> writes;
-  if (states.effect_offset) {
-    writes.emplace_back(*states.effect_offset, nearest(states.effects, [&](const EffectCode& code) {
-      return code.effect == look.effect ? 0 : code.effect == Effect::steady ? 1 : 2;
-    }));
-  }
-  if (states.colour_offset) {
-    writes.emplace_back(*states.colour_offset, nearest(states.colours, [&](const ColourCode& code) {
-      return distance(light_of({look.colour}), light_of({code.colour}));
-    }));
-  }
-  if (states.brightness_offset) {
-    writes.emplace_back(*states.brightness_offset, nearest(states.brightnesses, [&](const BrightnessCode& code) {
-      return std::abs(code.brightness - int{look.brightness});
-    }));
-  }
+  const auto put = [&](const std::optional<int>& offset, int value) {
+    writes.emplace_back(offset.value(), static_cast<std::uint16_t>(value));
+  };
+  if (states.effect_offset) put(states.effect_offset, nearest_effect(states, look).value);
+  if (states.colour_offset) put(states.colour_offset, nearest_colour(states, look).value);
+  if (states.brightness_offset) put(states.brightness_offset, nearest_brightness(states, look).value);
   std::sort(writes.begin(), writes.end());
   Requests requests;  // neighbours go in one request
   for (std::size_t i = 0; i < writes.size();) {

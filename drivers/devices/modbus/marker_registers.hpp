@@ -25,15 +25,15 @@ inline constexpr std::uint8_t kWriteRegisters = 0x10;
 inline constexpr std::uint16_t kStatusRegisters = 6;
 inline constexpr std::uint16_t kNeededStatusRegisters = 4;  ///< the others are for people
 
-/// The profile of our own marker (drivers/profiles/footlight-marker.yaml).
-[[nodiscard]] ModbusProfile footlight_marker();
-
 /// One write as the device takes it: one request, or one for each register or coil.
 using Requests = std::vector<ModbusRequest>;
 
 /// What the device is told for a look: the look's index, or the device's own number of what it has nearest. A lamp that
 /// is lit is never told to be dark, nor the other way round, where the palette has both.
 [[nodiscard]] LookIndex value_of(const ModbusProfile& profile, LookIndex index, const Look& look);
+
+/// What the device shows for a look: what it has nearest, a coil full white.
+[[nodiscard]] Look nearest_look(const ModbusProfile& profile, const Look& look);
 
 /// Sequence and plan byte (where the profile has them), then the looks. @param values 1..32, channel 0 first, each a
 /// `value_of`

@@ -59,6 +59,10 @@ std::string ModbusDriver::assumption() const {
   return text;
 }
 
+Look ModbusDriver::unguided() const {
+  return profile_.heartbeat_register ? no_guidance_look() : Look{{}, Effect::steady, 0};
+}
+
 std::vector<LookIndex> ModbusDriver::values_of(std::span<const LookIndex> looks) const {
   std::vector<LookIndex> values(looks.begin(), looks.end());
   for (LookIndex& value : values) value = modbus::value_of(profile_, value, looks_[value]);

@@ -49,6 +49,8 @@ class ModbusDriver final : public Driver {
   [[nodiscard]] std::string_view language() const override { return "modbus"; }
   [[nodiscard]] Capabilities capabilities() const override;
   [[nodiscard]] std::string assumption() const override;
+  [[nodiscard]] Look shown(const Look& look) const override { return modbus::nearest_look(profile_, look); }
+  [[nodiscard]] Look unguided() const override;
   [[nodiscard]] Duration preload_time(int channels) const override;
   [[nodiscard]] Duration status_time() const override;
   /// Until the last node has it; without a latch register every node's preload.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes serial.txt, canopen.txt and modbus.txt from docs/wire-protocol.md, in another language and by other hands than
+"""Writes serial.txt, canopen.txt, cia401.txt, modbus.txt and dmx.txt from docs/wire-protocol.md, in another language and by other hands than
 the drivers (binascii, bit-wise CRCs, COBS by splitting at zeros). Run it again only when that page changes:
     python3 tests/data/wire/golden.py
 """
@@ -164,6 +164,31 @@ write("canopen.txt", ["As candump -L writes frames. Node 7 has 32 channels, node
     ("", "sdo-nothing-answer", can(ANSWER, sdo(0x80, 0x2FFF, 0, struct.pack("<I", 0x06020000)))),
     ("SDO: the controller gives up 0x1018:2: abort 0x05040000", "sdo-give-up", can(ASK, sdo(0x80, 0x1018, 2, struct.pack("<I", 0x05040000)))),
 ])
+
+
+def sdo_write(node, index, sub, value, size):
+    """Expedited download: command 0x2F, 0x2B or 0x23 for 1, 2 or 4 bytes (CiA 301, 7.2.4.3.3)."""
+    command = {1: 0x2F, 2: 0x2B, 4: 0x23}[size]
+    return can(0x600 + node, struct.pack("<BHB", command, index, sub) + value.to_bytes(4, "little"))
+
+
+def sdo_read(node, index, sub):
+    return can(0x600 + node, struct.pack("<BHB", 0x40, index, sub) + bytes(4))
+
+
+MODULE = 11
+MAPPING = [(0x1600, 1, 0x62000108, 4), (0x1600, 2, 0x62000208, 4)]
+SAFE = [(0x6206, 1, 0xFF, 1), (0x6207, 1, 0x00, 1), (0x6206, 2, 0xFF, 1), (0x6207, 2, 0x00, 1)]
+BEATS = [(0x1016, 1, 0x007F03E8, 4), (0x1017, 0, 1000, 2)]
+SETUP = [(0x1400, 1, 0x8000020B, 4), (0x1600, 0, 0, 1)] + MAPPING + [(0x1600, 0, 2, 1), (0x1400, 2, 1, 1), (0x1400, 1, 0x20B, 4)] + SAFE + BEATS
+KEPT = MAPPING + [(0x1600, 0, 2, 1), (0x1400, 2, 1, 1), (0x1400, 1, 0x20B, 4)] + SAFE + BEATS
+write("cia401.txt", ["A module of 16 outputs, node 11: what it is asked and told before the show, in this order."],
+      [("Device type", "setup", sdo_read(MODULE, 0x1000, 0))]
+      + [("", "setup", sdo_write(MODULE, *entry)) for entry in SETUP]
+      + [("Read back", "setup", sdo_read(MODULE, KEPT[0][0], KEPT[0][1]))]
+      + [("", "setup", sdo_read(MODULE, index, sub)) for index, sub, _, _ in KEPT[1:]]
+      + [("RPDO1: channels 0, 3 and 9 are lit", "preload", can(0x200 + MODULE, [0x09, 0x02])),
+         ("SYNC without a counter", "latch", can(0x080, []))])
 
 WORD = (PLAN << 8) + 17
 write("modbus.txt", ["RTU frames, CRC included. Plan byte 0xA3; node 7 has 32 channels, node 9 has 5; looks as in serial.txt."], [

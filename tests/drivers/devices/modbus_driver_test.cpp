@@ -29,7 +29,7 @@ class ModbusDriverTest : public ::testing::Test {
 
   RecordingModbus port_;
   std::unique_ptr<ModbusDriver> driver_ = std::make_unique<ModbusDriver>(
-      port_, modbus::footlight_marker(), std::vector<NodeAddress>{kOne, kTwo}, std::uint8_t{0x77});
+      port_, footlight_marker_profile(), std::vector<NodeAddress>{kOne, kTwo}, std::uint8_t{0x77});
   EventLog log_;
   Instant now_ = instant_at(1);
 };
@@ -196,7 +196,7 @@ TEST_F(ModbusDriverTest, ARefusalByANodeThatOwesAnAnswerMayBeOfSomethingElse) {
 }
 
 TEST_F(ModbusDriverTest, WithoutASequenceAReceiptIsTakenForWhatItIs) {
-  ModbusProfile profile = modbus::footlight_marker();
+  ModbusProfile profile = footlight_marker_profile();
   profile.has_preload_sequence = false;
   use(profile);
   ASSERT_EQ(driver_->preload(kOne, 9, kFour, now_), SendStatus::accepted);
@@ -267,7 +267,7 @@ TEST_F(ModbusDriverTest, LatchHeartbeatAndLooksAreBroadcasts) {
 }
 
 TEST_F(ModbusDriverTest, OneLookARegisterStandsInTheLowByte) {
-  ModbusProfile profile = modbus::footlight_marker();
+  ModbusProfile profile = footlight_marker_profile();
   profile.looks_per_register = 1;
   profile.look_register = 6'300;
   use(profile);
@@ -277,7 +277,7 @@ TEST_F(ModbusDriverTest, OneLookARegisterStandsInTheLowByte) {
 }
 
 TEST_F(ModbusDriverTest, AProfileWithoutSequenceHasLooksAloneAndAPlainLatch) {
-  ModbusProfile profile = modbus::footlight_marker();
+  ModbusProfile profile = footlight_marker_profile();
   profile.has_preload_sequence = false;
   use(profile);
   EXPECT_FALSE(driver_->capabilities().sequenced_latch);
@@ -289,7 +289,7 @@ TEST_F(ModbusDriverTest, AProfileWithoutSequenceHasLooksAloneAndAPlainLatch) {
 }
 
 TEST_F(ModbusDriverTest, WithoutALatchTheLooksWaitHereForTheMoment) {
-  ModbusProfile profile = modbus::footlight_marker();
+  ModbusProfile profile = footlight_marker_profile();
   profile.latch_register.reset();
   use(profile);
   EXPECT_TRUE(driver_->capabilities().sequenced_latch) << "the driver itself holds looks back until their own latch";
@@ -434,7 +434,7 @@ TEST_F(ModbusDriverTest, APauseAfterAWriteHoldsTheNextOperationBack) {
 }
 
 TEST_F(ModbusDriverTest, WithoutBroadcastALatchGoesFromNodeToNode) {
-  ModbusProfile profile = modbus::footlight_marker();
+  ModbusProfile profile = footlight_marker_profile();
   profile.has_broadcast = false;
   use(profile);
   ASSERT_EQ(driver_->latch(1, now_), SendStatus::accepted);

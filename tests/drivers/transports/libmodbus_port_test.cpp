@@ -65,7 +65,7 @@ class RtuPort : public ::testing::Test {
 
 TEST_F(RtuPort, PutsTheDocumentedBytesOnTheLine) {
   const Golden golden("modbus.txt");
-  const ModbusProfile marker = modbus::footlight_marker();
+  const ModbusProfile marker = footlight_marker_profile();
   const Look grass{{0x7C, 0xFC, 0x00}, Effect::blink, 200};
   std::vector<LookIndex> looks;
   for (unsigned i = 0; i < 32; ++i) looks.push_back(static_cast<LookIndex>(7 * i));
