@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "app/find_in_show.hpp"
@@ -127,8 +128,8 @@ Status<> film(Session& session, const Scene& scene, const Options& options) {
     still.push_back(blank());
     frame.draw_still(still.back(), SectionIndex::of(s));
   }
-  std::vector<Canvas> canvases;
-  for (std::size_t i = 0; i < kAtOnce; ++i) canvases.push_back(blank());
+  // A canvas belongs to the thread that made it: Pango's fonts are one thread's.
+  tbb::enumerable_thread_specific<Canvas> canvases(blank);
   Block drawn;
   Block encoded;
   std::future<Status<>> writing;
@@ -140,7 +141,7 @@ Status<> film(Session& session, const Scene& scene, const Options& options) {
     drawn.resize(end - begin);
     tbb::parallel_for(begin, end, [&](std::size_t k) {
       const Instant at = scene.first + seconds(static_cast<double>(k) / options.rate);
-      Canvas& canvas = canvases[k - begin];
+      Canvas& canvas = canvases.local();
       canvas.copy(still[frame.preview().section_of(at).at()]);
       frame.draw_moving(canvas, at);
       to_planar(canvas.pixels(), scene.size.width, scene.size.height, drawn[k - begin]);

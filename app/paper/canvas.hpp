@@ -40,7 +40,8 @@ struct Capsule {
 
 /// A picture or pages with strokes and words: PNG, PDF or SVG. One unit is a pixel (PNG) or a point, 1/72 inch (PDF,
 /// SVG); x to the right, y downwards. Words are set by Pango with whatever fonts fontconfig finds, so that Chinese and
-/// accented names show. Colours stay as they were set last by `ink`. The only owner of Cairo and Pango.
+/// accented names show. Colours stay as they were set last by `ink`. A canvas is used by the thread that made it, whose
+/// fonts it shares with that thread's others. The only owner of Cairo and Pango.
 class Canvas {
  public:
   [[nodiscard]] static Canvas png(int width_px, int height_px, Ink ground);

@@ -446,8 +446,9 @@ TEST_F(RigFile, ACanBusOfModulesHasAProfile) {
   EXPECT_EQ(rig.buses[0].outputs->outputs, 32);
   EXPECT_EQ(files_.size(), 1U);
   EXPECT_EQ(messages("rig: 1\nbuses: [{name: can-a, url: \"can://can0\", profile: relay-16}]\nfloor: {buses: can-a}\n"),
-            "/work/wt-power/drivers/profiles/relay-16.yaml:1:1: error: outputs: this is the profile of a Modbus device "
-            "(a CANopen module has outputs)\n");
+            FOOTLIGHT_SOURCE_DIR
+            "/drivers/profiles/relay-16.yaml:1:1: error: outputs: this is the profile of a Modbus "
+            "device (a CANopen module has outputs)\n");
 }
 
 }  // namespace
