@@ -116,8 +116,8 @@ std::string beginning(const char* language, const std::string& title) {
 
 }  // namespace
 
-PartPages::PartPages(const Show& show, const Plan& plan, const Stamp& stamp, const PlaceWords& words)
-    : show_(show), plan_(plan), stamp_(stamp), words_(show, plan, words) {
+PartPages::PartPages(const Show& show, const Plan& plan, Stamp stamp, const PlaceWords& words)
+    : show_(show), plan_(plan), stamp_(std::move(stamp)), words_(show, plan, words) {
   const Frame frame(plan.stage.grid, {}, 1, 1);
   floor_ = fmt::format("{} {} {} {} {}", centimetres(frame.low.x), centimetres(frame.low.y), centimetres(frame.high.x),
                        centimetres(frame.high.y), centimetres(plan.stage.grid.pitch_m()));

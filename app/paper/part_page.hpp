@@ -12,10 +12,10 @@ namespace footlight::app {
 
 /// Makes one performer's part an HTML page for a telephone: one place after the other, seen with the performer's own
 /// eyes, the audience above. A page needs no other file and no network, and forbids itself to ask for any; without
-/// scripts it shows all places, without maps. The words are the dot sheet's. Borrows everything.
+/// scripts it shows all places, without maps. The words are the dot sheet's. Borrows the show and the plan.
 class PartPages {
  public:
-  PartPages(const Show& show, const Plan& plan, const Stamp& stamp, const PlaceWords& words);
+  PartPages(const Show& show, const Plan& plan, Stamp stamp, const PlaceWords& words);
   [[nodiscard]] std::string page_of(PerformerIndex who, const Part& part) const;
 
  private:
@@ -26,7 +26,7 @@ class PartPages {
 
   const Show& show_;
   const Plan& plan_;
-  const Stamp& stamp_;
+  Stamp stamp_;
   SheetWords words_;
   std::string floor_;  ///< its hull in centimetres, left, downstage, right, upstage, and the pitch
 };
