@@ -2,6 +2,7 @@
 #include "sim/markers/output_module.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace footlight::sim {
 namespace {
@@ -23,8 +24,8 @@ constexpr Duration kLook = milliseconds(1000);
 
 }  // namespace
 
-OutputModuleNode::OutputModuleNode(std::uint8_t id, const OutputModule& module, NodeModel& model, std::uint32_t serial)
-    : id_(id), module_(module), model_(model), serial_(serial), sdo_(id, *this) {
+OutputModuleNode::OutputModuleNode(std::uint8_t id, OutputModule module, NodeModel& model, std::uint32_t serial)
+    : id_(id), module_(std::move(module)), model_(model), serial_(serial), sdo_(id, *this) {
   power_on();
 }
 
@@ -116,8 +117,8 @@ SdoAbort OutputModuleNode::objection(Place place, std::uint32_t value) const {
   if (rpdo_valid()) return SdoAbort::state;
   if (sub == 0) {
     if (value > kMostMapped) return SdoAbort::too_long;
-    for (std::uint8_t entry = 1; entry <= value; ++entry) {
-      if (value_of(0x1600, entry) == 0) return SdoAbort::not_mappable;
+    for (std::uint32_t entry = 1; entry <= value; ++entry) {
+      if (value_of(0x1600, static_cast<std::uint8_t>(entry)) == 0) return SdoAbort::not_mappable;
     }
     return SdoAbort::none;
   }

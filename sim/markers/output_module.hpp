@@ -24,7 +24,7 @@ namespace footlight::sim {
 class OutputModuleNode final : public CanNode, private ObjectDictionary {
  public:
   /// @param id 1..126  @param module its outputs, vendor and product  @param model of values 0 and 1, borrowed
-  OutputModuleNode(std::uint8_t id, const OutputModule& module, NodeModel& model, std::uint32_t serial = 0);
+  OutputModuleNode(std::uint8_t id, OutputModule module, NodeModel& model, std::uint32_t serial = 0);
   OutputModuleNode(const OutputModuleNode&) = delete;  // its parts know each other
   OutputModuleNode& operator=(const OutputModuleNode&) = delete;
 
