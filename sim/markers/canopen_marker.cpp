@@ -59,28 +59,18 @@ CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, I
 }
 
 CanopenMarker::Reaction CanopenMarker::manage(const drivers::CanFrame& frame, Instant now) {
-  if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != id_)) return Reaction::none;
-  switch (frame.data[0]) {
-    case 0x01:
-      nmt_ = NmtState::operational;
+  switch (take_nmt(frame, id_, nmt_)) {
+    case NmtReset::none:
       return Reaction::none;
-    case 0x02:
-      nmt_ = NmtState::stopped;
-      return Reaction::none;
-    case 0x80:
-      nmt_ = NmtState::pre_operational;
-      return Reaction::none;
-    case 0x81:
-      model_.power_on(now);
-      power_on();
-      return Reaction::boot_up;
-    case 0x82:
-      nmt_ = NmtState::pre_operational;
+    case NmtReset::communication:
       sdo_.reset();
       return Reaction::boot_up;
-    default:
-      return Reaction::none;
+    case NmtReset::node:
+      break;
   }
+  model_.power_on(now);
+  power_on();
+  return Reaction::boot_up;
 }
 
 CanopenMarker::Reaction CanopenMarker::take_pdo(int number, const drivers::CanFrame& frame) {

@@ -6,6 +6,7 @@
 #include "drivers/transport.hpp"
 #include "sim/markers/can_node.hpp"
 #include "sim/markers/canopen_objects.hpp"
+#include "sim/markers/nmt_state.hpp"
 #include "sim/markers/node_model.hpp"
 #include "sim/markers/sdo_server.hpp"
 
@@ -33,8 +34,6 @@ class CanopenMarker final : public CanNode {
   [[nodiscard]] const CanopenObjects& objects() const { return objects_; }
 
  private:
-  enum class NmtState : std::uint8_t { stopped = 4, operational = 5, pre_operational = 127 };
-
   Reaction manage(const drivers::CanFrame& frame, Instant now);
   Reaction take_pdo(int number, const drivers::CanFrame& frame);
   void take_mpdo(const drivers::CanFrame& frame);

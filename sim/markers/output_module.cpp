@@ -187,25 +187,11 @@ CanNode::Reaction OutputModuleNode::receive(const drivers::CanFrame& frame, Inst
 }
 
 CanNode::Reaction OutputModuleNode::manage(const drivers::CanFrame& frame, Instant now) {
-  if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != id_)) return Reaction::none;
-  switch (frame.data[0]) {
-    case 0x01:
-      nmt_ = NmtState::operational;
-      return Reaction::none;
-    case 0x02:
-      nmt_ = NmtState::stopped;
-      return Reaction::none;
-    case 0x80:
-      nmt_ = NmtState::pre_operational;
-      return Reaction::none;
-    case 0x81:
-    case 0x82:
-      if (frame.data[0] == 0x81) model_.power_on(now);
-      power_on();
-      return Reaction::boot_up;
-    default:
-      return Reaction::none;
-  }
+  const NmtReset reset = take_nmt(frame, id_, nmt_);
+  if (reset == NmtReset::none) return Reaction::none;
+  if (reset == NmtReset::node) model_.power_on(now);
+  power_on();
+  return Reaction::boot_up;
 }
 
 CanNode::Reaction OutputModuleNode::take_pdo(const drivers::CanFrame& frame, Instant now) {

@@ -10,6 +10,7 @@
 
 #include "core/rig.hpp"
 #include "sim/markers/can_node.hpp"
+#include "sim/markers/nmt_state.hpp"
 #include "sim/markers/node_model.hpp"
 #include "sim/markers/sdo_server.hpp"
 
@@ -37,7 +38,6 @@ class OutputModuleNode final : public CanNode, private ObjectDictionary {
   [[nodiscard]] const drivers::CanFrame& sdo_answer() const override { return sdo_answer_; }
 
  private:
-  enum class NmtState : std::uint8_t { stopped = 4, operational = 5, pre_operational = 127 };
   /// An entry of the dictionary that is a plain number.
   struct Entry {
     std::uint32_t value = 0;
