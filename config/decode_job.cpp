@@ -25,6 +25,21 @@ Error undecodable(const DecodeJob& job) {
                       job.path, job.limits.max_pixels));
 }
 
+/// The child has ended without having said all. @param status its wait status
+Error died(const DecodeJob& job, int status) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    return input_error(
+        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
+                    "do)",
+                    job.path, job.limits.max_seconds));
+  }
+  const std::string how = WIFSIGNALED(status)
+                              ? fmt::format("by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                              : fmt::format("with status {}", WEXITSTATUS(status));
+  return input_error(fmt::format("decoding '{}' ended {} (the file is broken, or needs more than {} MiB)", job.path,
+                                 how, job.limits.max_memory_bytes >> 20U));
+}
+
 }  // namespace
 
 Error refused_by_child(const DecodeJob& job, const DecodeRecord& said) {
@@ -59,20 +74,6 @@ Error refused_by_child(const DecodeJob& job, const DecodeRecord& said) {
                                      job.path, said.count));
   }
   return undecodable(job);
-}
-
-Error died(const DecodeJob& job, int status) {
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    return input_error(
-        fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
-                    "do)",
-                    job.path, job.limits.max_seconds));
-  }
-  const std::string how = WIFSIGNALED(status)
-                              ? fmt::format("by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                              : fmt::format("with status {}", WEXITSTATUS(status));
-  return input_error(fmt::format("decoding '{}' ended {} (the file is broken, or needs more than {} MiB)", job.path,
-                                 how, job.limits.max_memory_bytes >> 20U));
 }
 
 Error nonsense(const DecodeJob& job, std::string_view what) {
@@ -115,6 +116,22 @@ std::optional<Error> take_from(DecoderProcess& process, void* data, std::size_t 
       fmt::format("'{}' takes more than {:g} s to decode (a shorter range or a smaller frame size would "
                   "do)",
                   job.path, 2 * job.limits.max_seconds));
+}
+
+std::optional<Error> wrong_end(const DecodeJob& job, const DecodeRecord& record, std::size_t frames) {
+  if (known_refusal(record)) return refused_by_child(job, record);
+  if (record.status == DecodeStatus::ok && record.count == static_cast<std::int64_t>(frames)) return std::nullopt;
+  return nonsense(job, "it does not end as it should");
+}
+
+std::optional<Error> wrong_close(DecoderProcess& process, const DecodeJob& job, const Clock& clock, Instant deadline) {
+  char more = 0;
+  if (process.read(&more, 1, clock, deadline, job.stop) != DecoderProcess::Read::end) {
+    return nonsense(job, "something follows its end");
+  }
+  const int status = process.finish(false);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return died(job, status);
+  return std::nullopt;
 }
 
 }  // namespace footlight::config

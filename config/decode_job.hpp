@@ -30,8 +30,6 @@ struct DecodeJob {
 [[nodiscard]] bool known_refusal(const DecodeRecord& record);
 /// What the child said, in words.
 [[nodiscard]] Error refused_by_child(const DecodeJob& job, const DecodeRecord& said);
-/// The child has ended without having said all. @param status its wait status
-[[nodiscard]] Error died(const DecodeJob& job, int status);
 /// The child has sent what no child of this version sends.
 [[nodiscard]] Error nonsense(const DecodeJob& job, std::string_view what);
 /// Errors (ErrorKind::input): there is nothing at `path`, or no regular file.
@@ -39,5 +37,10 @@ struct DecodeJob {
 /// Reads `size` bytes of the child's stream. @return why there are none
 [[nodiscard]] std::optional<Error> take_from(DecoderProcess& process, void* data, std::size_t size,
                                              const DecodeJob& job, const Clock& clock, Instant deadline);
+/// Why the last record does not end a stream of so many frames as it should.
+[[nodiscard]] std::optional<Error> wrong_end(const DecodeJob& job, const DecodeRecord& record, std::size_t frames);
+/// Waits for the child, which has told its end. @return what it says beyond it, or how it died
+[[nodiscard]] std::optional<Error> wrong_close(DecoderProcess& process, const DecodeJob& job, const Clock& clock,
+                                               Instant deadline);
 
 }  // namespace footlight::config

@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include <sys/wait.h>
-
 #include "config/decode_job.hpp"
 #include "core/check.hpp"
 
@@ -53,12 +51,8 @@ class LampReader {
       if (record.kind == DecodeRecord::Kind::end) break;
       if (auto bad = frame(record)) return *std::move(bad);
     }
-    if (known_refusal(record)) return refused_by_child(job_, record);
-    if (record.status != DecodeStatus::ok || record.count != static_cast<std::int64_t>(film_.frames.size())) {
-      return nonsense(job_, "it does not end as it should");
-    }
-    const int status = process_.finish(false);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return died(job_, status);
+    if (auto bad = wrong_end(job_, record, film_.frames.size())) return *std::move(bad);
+    if (auto bad = wrong_close(process_, job_, clock_, deadline_)) return *std::move(bad);
     return std::move(film_);
   }
 

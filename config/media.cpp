@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include "config/decode_job.hpp"
 #include "config/decode_protocol.hpp"
@@ -51,19 +50,11 @@ class FilmReader {
       if (record.kind == DecodeRecord::Kind::end) break;
       if (auto bad = frame(record)) return *std::move(bad);
     }
-    if (known_refusal(record)) return refused_by_child(job_, record);
-    if (record.status != DecodeStatus::ok || record.count != static_cast<std::int64_t>(film_.frames.size())) {
-      return nonsense(job_, "it does not end as it should");
-    }
+    if (auto bad = wrong_end(job_, record, film_.frames.size())) return *std::move(bad);
     if (film_.frames.size() < (job_.video ? 2U : 1U) || (job_.last && wanted() != film_.frames.size())) {
       return nonsense(job_, "frames are missing");
     }
-    char more = 0;
-    if (process_.read(&more, 1, clock_, deadline_, job_.stop) != DecoderProcess::Read::end) {
-      return nonsense(job_, "something follows its end");
-    }
-    const int status = process_.finish(false);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return died(job_, status);
+    if (auto bad = wrong_close(process_, job_, clock_, deadline_)) return *std::move(bad);
     return std::move(film_);
   }
 
