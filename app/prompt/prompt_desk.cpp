@@ -2,13 +2,10 @@
 #include "app/prompt/prompt_desk.hpp"
 
 #include <array>
-#include <cerrno>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <poll.h>
-#include <unistd.h>
 
 namespace footlight::app {
 namespace {
@@ -21,7 +18,6 @@ using Phase = controller::Rehearsal::Phase;
 
 constexpr Duration kStateLines = milliseconds(500);  // while nothing but the position changes
 constexpr Duration kRefusedFor = milliseconds(2500);
-constexpr std::size_t kLongestLine = 4096;
 constexpr int kTempoStep_percent = 5;
 constexpr char kEscape = 27;
 
@@ -58,49 +54,31 @@ PromptDesk::PromptDesk(Session& session, const Show& show, const Plan& plan, boo
       orders_(show, plan),
       text_(show, plan, orders_.plays()),
       json_(json),
-      listens_(listens),
+      input_(listens ? STDIN_FILENO : -1),
       keys_(listens && RawTerminal::there()) {
   if (!keys_) return;
   terminal_.emplace();
   if (!session.quiet) session_.note(std::string(kKeys));
 }
 
-void PromptDesk::wait(Duration most) const {
-  pollfd file{STDIN_FILENO, POLLIN, 0};
-  const bool reads = listens_ && !closed_;
-  (void)::poll(&file, reads ? 1 : 0,
-               static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(most).count()));
-}
-
 DeskWishes PromptDesk::look(const DeskView& view) {
   seen_ = view;
   wishes_ = {};
-  if (listens_) read();
-  wishes_.nobody = !listens_ || closed_;
+  if (!input_.closed()) read();
+  wishes_.nobody = input_.closed();
   show_state(view);
   return std::exchange(wishes_, {});
 }
 
 void PromptDesk::read() {
-  std::array<char, 256> buffer{};
-  pollfd file{STDIN_FILENO, POLLIN, 0};
-  while (!closed_ && ::poll(&file, 1, 0) > 0) {
-    const ssize_t count = ::read(STDIN_FILENO, buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    closed_ = count <= 0;
-    for (ssize_t i = 0; i < count; ++i) {
-      const char c = buffer[static_cast<std::size_t>(i)];
-      if (keys_) {
-        take_key(c);
-      } else if (c == '\n') {
-        take_line(std::exchange(input_, {}));
-      } else if (input_.size() < kLongestLine) {
-        input_ += c;
-      }
-    }
-    if (count < static_cast<ssize_t>(buffer.size())) break;
+  if (keys_) {
+    for (const char key : input_.take()) take_key(key);
+  } else {
+    for (const std::string& line : input_.lines()) take_line(line);
   }
-  if (closed_) session_.note("stdin is closed: nobody can press GO any more (--go presses it; SIGINT ends)");
+  if (input_.closed()) {
+    session_.note("stdin is closed: nobody can press GO any more (--go presses it; SIGINT ends)");
+  }
 }
 
 void PromptDesk::take_line(const std::string& line) {

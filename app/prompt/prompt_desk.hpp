@@ -10,6 +10,7 @@
 #include "app/prompt/raw_terminal.hpp"
 #include "app/prompt/state_text.hpp"
 #include "app/session.hpp"
+#include "app/standard_input.hpp"
 
 namespace footlight::app {
 
@@ -26,7 +27,7 @@ class PromptDesk {
   /// A line of the run's course.
   void tell(std::string_view what, const std::string& line);
   /// Until somebody says something, at most so long.
-  void wait(Duration most) const;
+  void wait(Duration most) const { input_.wait(most); }
 
  private:
   void read();
@@ -42,11 +43,9 @@ class PromptDesk {
   Orders orders_;
   StateText text_;
   bool json_;
-  bool listens_;
+  StandardInput input_;
   bool keys_;  ///< of a terminal
   std::optional<RawTerminal> terminal_;
-  bool closed_ = false;
-  std::string input_;  ///< of a line that is not whole
   std::optional<std::string> prompt_;
   std::string typed_;
   bool quit_asked_ = false;
