@@ -57,16 +57,20 @@ def make_cases(Stage, program):
     """The test cases, over stage.py's."""
 
     class Rehearse(Stage):
-        def test_hold_back_and_the_reset_move_leave_every_marker_right(self):
+        def desk_in_cue_2(self, *options):
             self.make_show()
             self.serve()
-            desk = Desk(self, program(), "--count-in", "1")
+            desk = Desk(self, program(), *options)
             desk.until("roll call", ready=True)
             desk.say("go")
             desk.until("the end of cue 1", phase="stands", standby="2")
             time.sleep(0.3)
             desk.say("go")
             desk.until("cue 2", phase="runs", cue="2")
+            return desk
+
+        def test_hold_back_and_the_reset_move_leave_every_marker_right(self):
+            desk = self.desk_in_cue_2("--count-in", "1")
             desk.say("hold")
             desk.until("the hold", phase="stands", cue="2")
             desk.say("jump cue 1")
@@ -91,15 +95,7 @@ def make_cases(Stage, program):
             self.assert_floor(report)
 
         def test_refused_orders_say_why_and_a_flood_stops_no_cue(self):
-            self.make_show()
-            self.serve()
-            desk = Desk(self, program(), "--count-in", "0")
-            desk.until("roll call", ready=True)
-            desk.say("go")
-            desk.until("the end of cue 1", phase="stands", standby="2")
-            time.sleep(0.3)
-            desk.say("go")
-            desk.until("cue 2", phase="runs", cue="2")
+            desk = self.desk_in_cue_2("--count-in", "0")
             desk.say(*["step", "placed", "go", "jump cue 99", "cancel"] * 400)
             desk.until("the end", phase="finished")
             desk.say("quit")
