@@ -11,6 +11,7 @@
 #include "planner/schedule/beats.hpp"
 #include "planner/schedule/mend.hpp"
 #include "planner/schedule/step.hpp"
+#include "planner/schedule/stops_over_cells.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -52,7 +53,7 @@ class ChainBuilder {
     for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
     if (!pace()) return std::nullopt;
     if (over_cells()) {
-      stand_after_each_step();
+      chain_ = stops_over_cells(std::move(chain_), after_, beats_, *task_.show);
     } else if (!mend(mending(), chain_, progress_)) {
       return std::nullopt;
     }
@@ -321,46 +322,6 @@ class ChainBuilder {
     }
   }
 
-  /// Over cells everybody stands on a cell after each step. Whoever is there before the time waits; an exact formation
-  /// that takes more steps than there is time for gets them all the same, too fast, for the refusal to tell how many.
-  void stand_after_each_step() {
-    Chain whole;
-    whole.stops.push_back(chain_.stops.front());
-    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
-      const auto& after = after_[k - 1];
-      const std::vector<Instant> times = times_of_steps(k, after.size());
-      if (!after.empty()) whole.stops.back().depart = times.front();
-      for (std::size_t n = 1; n < after.size(); ++n) {
-        Stop stop;
-        stop.arrive = stop.depart = times[n];
-        stop.count = task_.show->tempo.count_at(times[n]);
-        stop.section = chain_.stops[k].section;
-        stop.cells = after[n - 1];
-        whole.stops.push_back(std::move(stop));
-        whole.legs.emplace_back().target_of = numbers(after[n - 1].size());
-        whole.longest_m.push_back(grid_.pitch_m());
-      }
-      whole.stops.push_back(chain_.stops[k]);
-      if (!after.empty()) whole.stops.back().arrive = times.back();
-      whole.legs.push_back(std::move(chain_.legs[k - 1]));
-      whole.longest_m.push_back(after.empty() ? chain_.longest_m[k - 1] : grid_.pitch_m());
-    }
-    chain_ = std::move(whole);
-  }
-
-  [[nodiscard]] std::vector<Instant> times_of_steps(std::size_t k, std::size_t steps) const {
-    std::vector<Instant> times = beats_[k - 1].at;
-    if (steps < times.size()) {
-      times.resize(steps + 1);
-      return times;
-    }
-    const Instant depart = chain_.stops[k - 1].depart;
-    const double whole_s = to_seconds(chain_.stops[k].arrive - depart);
-    times.clear();
-    for (std::size_t n = 0; n <= steps; ++n) times.push_back(depart + seconds(whole_s * double(n) / double(steps)));
-    return times;
-  }
-
   [[nodiscard]] std::size_t heading_of(std::size_t k) const {
     while (!chain_.stops[k].station) ++k;
     return k;
@@ -426,8 +387,8 @@ class ChainBuilder {
   std::vector<std::vector<std::uint32_t>> who_;       // performer on each place of each station as drawn; may be empty
   std::vector<std::vector<std::uint32_t>> kinds_;     // of each performer in each interval between stations
   StageKey floor_{};
-  std::vector<Beats> beats_;                                // over cells: of each leg
-  std::vector<std::vector<std::vector<CellIndex>>> after_;  // over cells: of each leg, as Step::after
+  std::vector<Beats> beats_;       // over cells: of each leg
+  std::vector<StepsOfLeg> after_;  // over cells: of each leg, as Step::after
   Chain chain_;
 };
 
