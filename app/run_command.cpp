@@ -19,10 +19,10 @@
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
 #include "app/plan_step.hpp"
-#include "app/prompt/prompt_desk.hpp"
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
+#include "app/surfaces/prompt_desk.hpp"
 #include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
 #include "config/output_file.hpp"
@@ -124,7 +124,9 @@ void tell_limits(Session& session, const Show& show, const Plan& plan,
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log) {
   const Show& show = planned.loaded.show;
-  PromptDesk desk(session, show, planned.plan(), options.status_lines, !options.go);
+  RunDesk desk(show, planned.plan());
+  PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
+  desk.add(prompt);
   LiveOptions live;
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
@@ -135,7 +137,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   live.wait = [&](Duration most) { desk.wait(most); };
   live.reset = [&](const std::string& line) {
     traces.moment(line);
-    desk.tell("reset", line);
+    desk.tell({RunEvent::Kind::reset, line});
   };
   live.plan_way = [&](Instant from, Instant to, const std::atomic<bool>& abandoned) {
     return plan_reset_way(show, planned.plan(), from, to, std::max(1.0, options.count_in()), abandoned);
@@ -154,7 +156,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   };
   live.moment = [&](const std::string& line) {
     traces.moment(line);
-    desk.tell("moment", line);
+    desk.tell({RunEvent::Kind::moment, line});
   };
   auto report = live_run(show, planned.plan(), rig, ports, live);
   session.clear_line();

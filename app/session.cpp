@@ -10,7 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "app/prompt/raw_terminal.hpp"
+#include "app/surfaces/raw_terminal.hpp"
 
 namespace footlight::app {
 namespace {

@@ -23,6 +23,8 @@ class StandardInput {
   [[nodiscard]] std::vector<std::string> lines();
   /// Until there is something, at most so long.
   void wait(Duration most) const;
+  /// -1: nothing comes any more.
+  [[nodiscard]] int file() const { return file_; }
   /// Nothing comes any more.
   [[nodiscard]] bool closed() const { return file_ < 0; }
 

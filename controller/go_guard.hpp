@@ -13,8 +13,12 @@ namespace footlight::controller {
 enum class GoSource {
   keyboard,  ///< of a terminal: a key that is held repeats, and nobody tells when it is released
   lines,     ///< another program
+  page,      ///< of the console in a browser
+  network,   ///< OSC, MIDI Show Control
+  button,    ///< on the desk, wired
+  clock,     ///< timecode
 };
-inline constexpr std::size_t kGoSources = 2;
+inline constexpr std::size_t kGoSources = 6;
 
 /// One guard before GO for everything that can press it: a press that bounces, a key that is held and two people who
 /// press at once are one GO.

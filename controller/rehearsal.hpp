@@ -41,6 +41,7 @@ struct Command {
   std::uint32_t reset = 0;          ///< as `Rehearsal::Reset::id`
   std::size_t first = 0;            ///< its first switch in the schedule
   const ResetMove* move = nullptr;  ///< lives as long as the schedule
+  std::uint32_t said = 0;           ///< for whoever said it, to know the answer; 0: nobody
 };
 
 enum class Outcome : std::uint8_t {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/prompt/orders.hpp"
+#include "app/surfaces/orders.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,29 +5,26 @@
 #include <string>
 #include <vector>
 
-#include "app/live/live_run.hpp"
-#include "app/prompt/orders.hpp"
-#include "app/prompt/raw_terminal.hpp"
-#include "app/prompt/state_text.hpp"
 #include "app/session.hpp"
 #include "app/standard_input.hpp"
+#include "app/surfaces/raw_terminal.hpp"
+#include "app/surfaces/run_desk.hpp"
+#include "app/surfaces/state_text.hpp"
+#include "app/surfaces/surface.hpp"
 
 namespace footlight::app {
 
 /// The stage manager's place: keys of a terminal, or lines of another program; what happens, in words or as lines of
 /// JSON. HOLD is no emergency stop, and says so.
-class PromptDesk {
+class PromptDesk final : public Surface {
  public:
   /// Borrows all. @param json every line on stdout is a JSON document  @param listens reads stdin
-  PromptDesk(Session& session, const Show& show, const Plan& plan, bool json, bool listens);
+  PromptDesk(Session& session, const Show& show, const Plan& plan, RunDesk& desk, bool json, bool listens);
 
-  /// Everything that has been said since the last time, and tells what has changed.
-  DeskWishes look(const DeskView& view);
-  void answered(const Answer& answer);
-  /// A line of the run's course.
-  void tell(std::string_view what, const std::string& line);
-  /// Until somebody says something, at most so long.
-  void wait(Duration most) const { input_.wait(most); }
+  void look(const DeskView& view, RunDesk& desk) override;
+  void told(const RunEvent& event) override;
+  [[nodiscard]] int file() const override { return input_.file(); }
+  [[nodiscard]] bool listens() const override { return !input_.closed(); }
 
  private:
   void read();
@@ -35,12 +32,14 @@ class PromptDesk {
   void take_key(char key);
   void type(char key);
   void ask(std::string prefix);
-  void order(controller::Command::Kind kind, int percent = 100);
+  void change_tempo(int by_percent);
+  void answered(const RunEvent& answer);
   void refuse(const std::string& why);
+  void print(const std::string& line);
   void show_state(const DeskView& view);
 
   Session& session_;
-  Orders orders_;
+  RunDesk& desk_;
   StateText text_;
   bool json_;
   StandardInput input_;
@@ -48,8 +47,8 @@ class PromptDesk {
   std::optional<RawTerminal> terminal_;
   std::optional<std::string> prompt_;
   std::string typed_;
+  Speaker me_;
   bool quit_asked_ = false;
-  DeskWishes wishes_;
   DeskView seen_{};
   std::string told_;  ///< the last state, without what runs
   Instant told_at_ = Instant::min();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/prompt/state_text.hpp"
+#include "app/surfaces/state_text.hpp"
 
 #include <cmath>
 

@@ -14,7 +14,7 @@ namespace footlight::app {
 
 /// What somebody at the desk has said.
 struct Order {
-  enum class Kind { command, help, state, quit };
+  enum class Kind { command, quit };
   Kind kind = Kind::command;
   controller::Command command{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/prompt/raw_terminal.hpp"
+#include "app/surfaces/raw_terminal.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/prompt/orders.hpp"
+#include "app/surfaces/orders.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -103,8 +103,6 @@ Result<Order> Orders::from(std::string_view line) const {
     order.command.kind = plain->second;
     return order;
   }
-  if (text == "help" || text == "?") return Order{Order::Kind::help, {}};
-  if (text == "state") return Order{Order::Kind::state, {}};
   if (text == "quit") return Order{Order::Kind::quit, {}};
   if (text == "top") {
     order.command.kind = Kind::jump;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/surfaces/orders.hpp"
+#include "app/surfaces/surface.hpp"
+
+namespace footlight::app {
+
+/// The desk of a run: whatever surface somebody uses, her words become commands here, and everybody is told what came
+/// of them. One thread.
+class RunDesk {
+ public:
+  /// An order that does not concern where the show is: "note ...". It answers at once.
+  struct Verb {
+    std::string word;  ///< its first word, lower case
+    std::string help;  ///< lines as `kOrders`
+    /// @param words after the verb, as they were said  @return what to answer; an error's message says what would be
+    /// right
+    std::function<Result<std::string>(const std::vector<std::string>& words, const Speaker& who)> carry_out;
+  };
+
+  /// Borrows show and plan.
+  RunDesk(const Show& show, const Plan& plan) : orders_(show, plan) {}
+
+  /// Before the run. @param surface borrowed
+  void add(Surface& surface) { surfaces_.push_back(&surface); }
+  void add(Verb verb);
+
+  /// An order in words (`help`). What came of it, also that it was not understood, is told to all.
+  void say(std::string_view line, const Speaker& who);
+  /// An order that is understood already. @param order how to call it
+  void say(controller::Command command, std::string order, const Speaker& who);
+  void tell(RunEvent event);
+  [[nodiscard]] std::string help() const;
+  [[nodiscard]] const Orders& orders() const { return orders_; }
+
+  // For LiveOptions.
+  DeskWishes look(const DeskView& view);
+  void answered(const Answer& answer);
+  /// Until a surface has something, at most so long.
+  void wait(Duration most) const;
+
+ private:
+  struct Said {
+    std::string order;
+    Speaker who;
+  };
+  void refuse(std::string_view order, const Speaker& who, std::string why);
+
+  Orders orders_;
+  std::vector<Verb> verbs_;
+  std::vector<Surface*> surfaces_;
+  std::map<std::uint32_t, Said> said_;  ///< by command, until it is answered
+  std::uint32_t last_ = 0;
+  DeskWishes wishes_;
+  Instant now_{};
+};
+
+}  // namespace footlight::app
