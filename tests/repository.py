@@ -31,6 +31,8 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"cairo": r"^app/paper/",
     r"pango": r"^app/paper/",
     r"qrencode": r"^app/paper/qr_code\.cpp",
+    r"RtMidi\.h": r"^app/midi/",
+    r"lo/": r"^app/remote/|^app/time/",
     r"CLI/": r"^app/",
 }
 
