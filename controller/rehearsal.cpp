@@ -49,6 +49,11 @@ Rehearsal::Rehearsal(CueEngine& engine, TempoMap tempo, Stands stands, Settings 
   FL_CHECK(notice_ != nullptr && settings.count_in_counts >= 0);
 }
 
+void Rehearsal::begin_at(Instant position) noexcept {
+  const auto& plays = engine_.plays();
+  engine_.place(std::clamp(position, plays.front().from, plays.back().to));
+}
+
 // ---- time
 
 void Rehearsal::step(Instant now) noexcept {

@@ -102,6 +102,10 @@ class Rehearsal {
 
   Rehearsal(CueEngine& engine, TempoMap tempo, Stands stands, Settings settings, Notice notice);
 
+  /// The show stands here, held, also in the middle of a walk: a program that was started again, at the place where
+  /// people were last. Before the first step. @param position clamped to the show
+  void begin_at(Instant position) noexcept;
+
   /// Lets everything up to and including `now` happen. `now` never goes back.
   void step(Instant now) noexcept;
   /// O(log switches) and one `notice`.

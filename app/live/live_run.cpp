@@ -120,6 +120,7 @@ class LiveRun {
 Result<LiveReport> LiveRun::play() {
   const Instant began = clock_.now();
   BareTimer bare(clock_);
+  if (options_.position) rehearsal_.begin_at(*options_.position);
   cue_.start([this] {
     for (const auto& bus : threads_) bus->wake();
   });

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,8 @@ struct LiveOptions {
   /// True: GO as soon as the roll call is over, and again whenever the show has stood for the shortest stand.
   bool go = false;
   controller::Rehearsal::Settings rehearsal{};
+  /// The show begins here and stands, held, also in the middle of a walk: a run that was cut off. None: at the top.
+  std::optional<Instant> position;
   /// The desk, asked again and again by the calling thread; none: the run ends with the show.
   std::function<DeskWishes(const DeskView&)> desk;
   /// What came of each command, in their order.

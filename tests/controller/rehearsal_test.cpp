@@ -107,6 +107,33 @@ struct Bench {
   std::map<std::pair<Instant, Instant>, std::pair<std::size_t, std::optional<ResetMove>>> moves;
 };
 
+TEST(Rehearsal, AShowThatBeginsAtAPlaceShowsWhatItWouldShowHadItBeenPlayedToThere) {
+  EXPECT_TRUE(rc::check("the lamps of a place", [] {
+    const Instant place = kStart + milliseconds(*rc::gen::inRange(0, 20'001));
+    Bench played;
+    while (played.position() < place) {
+      if (played.rehearsal->phase() == Phase::stands) RC_ASSERT(played.go() == Outcome::cue_started);
+      played.run_until(played.clock.now() + std::min(place - played.position(), milliseconds(500)));
+    }
+    played.tell(Kind::hold);
+    RC_ASSERT(played.position() == place);
+    Bench begun;
+    begun.rehearsal->begin_at(place);
+    begun.run_for(60);
+    RC_ASSERT(begun.position() == place);
+    const auto walks_now = [&](Instant time) { return time == place; };  // begun, or about to
+    const auto& switches = begun.schedule->switches();
+    if (std::ranges::none_of(switches, walks_now, &Switch::time)) RC_ASSERT(begun.lit() == played.lit());
+    RC_ASSERT(begun.go() == (place == instant_at(20)              ? Outcome::nothing_left
+                             : begun.rehearsal->engine().active() ? Outcome::goes_on
+                                                                  : Outcome::cue_started));
+    begun.run_for(20);
+    RC_ASSERT(begun.position() == (place < instant_at(4)    ? instant_at(4)
+                                   : place < instant_at(12) ? instant_at(12)
+                                                            : instant_at(20)));
+  }));
+}
+
 TEST(Rehearsal, FreezeStopsInTheMiddleOfAWalkAndGoGoesOnWithACountIn) {
   Bench bench(manual(), 4);
   EXPECT_EQ(bench.go(), Outcome::cue_started);
