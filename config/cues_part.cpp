@@ -40,6 +40,37 @@ std::optional<SectionIndex> read_section_name(MappingReader& cue, const std::opt
   return std::nullopt;
 }
 
+void read_gate_names(MappingReader& root, Show& show) {
+  for (const Written& written : root.list("gates")) {
+    if (written.text.empty()) {
+      root.error(written, "a gate without a name", "such as \"trap closed\"");
+    } else if (std::ranges::find(show.gates, written.text) != show.gates.end()) {
+      root.error(written, "a second gate has the name " + in_quotes(written.text), "once will do");
+    } else if (show.gates.size() == kMostGates) {
+      return root.error(written, "more than " + std::to_string(kMostGates) + " gates",
+                        "one that stands for several, by their contacts in series");
+    } else {
+      show.gates.push_back(written.text);
+    }
+  }
+}
+
+/// Bits of the gates that a cue names.
+std::uint32_t read_gates_of(MappingReader& cue, const Show& show) {
+  std::uint32_t gates = 0;
+  for (const Written& written : cue.list("gates")) {
+    const auto found = std::ranges::find(show.gates, written.text);
+    if (found != show.gates.end()) {
+      gates |= 1U << static_cast<unsigned>(found - show.gates.begin());
+    } else {
+      cue.error(written, "no gate has the name " + in_quotes(written.text),
+                show.gates.empty() ? "the show lists them: gates: [" + in_quotes(written.text) + "]"
+                                   : suggestion(written.text, show.gates, "gates"));
+    }
+  }
+  return gates;
+}
+
 /// A cue, and where its section is named.
 struct CueEntry {
   Cue cue;
@@ -58,6 +89,7 @@ std::optional<CueEntry> read_cue(MappingReader& reader, const ShowReading& readi
   out.pre_wait = seconds(reader.quantity("pre_wait").value_or(0));
   out.post_wait = seconds(reader.quantity("post_wait").value_or(0));
   out.notes = reader.text("notes").value_or("");
+  out.gates = read_gates_of(reader, show);
   if (!number || !section) return std::nullopt;
   out.number = *number;
   out.section = *section;
@@ -165,6 +197,7 @@ bool read_changes(MappingReader& music, std::vector<TempoChange>& changes, std::
 
 void read_cues(ShowReading& show, MappingReader& root) {
   std::vector<Cue>& out = show.show().cues;
+  if (root.has("gates")) read_gate_names(root, show.show());
   if (!root.has("cues")) {
     out = cue_for_each(show.show().sections);
     return;

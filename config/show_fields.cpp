@@ -197,6 +197,13 @@ const Listing& cue_listing() {
            .fallback = "0 s",
            .range = {0, 86'400}},
           {.key = "notes", .type = Type::text, .doc = "For whoever calls the show.", .otherwise = "none"},
+          {.key = "gates",
+           .type = Type::text,
+           .doc =
+               "Of the show's `gates`, those without which this cue does not run: GO is refused, and a cue that runs "
+               "holds when one is lost.",
+           .otherwise = "none",
+           .list = true},
       }};
   return kListing;
 }
@@ -289,6 +296,12 @@ const Listing& show_listing() {
            .doc = "What GO starts.",
            .otherwise = "one for each section, numbered from 1, each following the one before",
            .listing = &cue_listing(),
+           .list = true},
+          {.key = "gates",
+           .type = Type::text,
+           .doc = "Names of what has to be safe before people walk there, at most 32: \"trap closed\", \"lift level\". "
+                  "What tells it stands in the file of `footlight run --remote`.",
+           .otherwise = "none",
            .list = true},
           {.key = "looks",
            .type = Type::mapping,

@@ -154,6 +154,9 @@ struct Section {
 
 enum class ContinueMode { manual, auto_continue, auto_follow };
 
+/// Inputs that gate cues: a trap that is closed, a lift that is level.
+inline constexpr std::size_t kMostGates = 32;
+
 /// What GO starts. The continue mode stands on the earlier cue.
 struct Cue {
   CueNumber number;
@@ -163,6 +166,7 @@ struct Cue {
   Duration pre_wait{};
   Duration post_wait{};
   std::string notes;
+  std::uint32_t gates = 0;  ///< bit g: the cue needs gate g of the show
   Position position;
 };
 
@@ -190,8 +194,9 @@ struct Show {
   std::vector<Performer> performers;
   std::vector<Group> groups;
   TempoMap tempo;
-  std::vector<Section> sections;  ///< ascending by start, not overlapping
-  std::vector<Cue> cues;          ///< ascending by number and by section
+  std::vector<Section> sections;   ///< ascending by start, not overlapping
+  std::vector<Cue> cues;           ///< ascending by number and by section
+  std::vector<std::string> gates;  ///< what has to be closed, in place, clear; at most kMostGates, unique
   std::map<LampRole, LookChoice> looks;
   double announce_counts = 4;            ///< the next places light this long before a move; a count-down
   Colour default_colour{255, 255, 255};  ///< of performers without a group

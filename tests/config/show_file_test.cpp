@@ -385,6 +385,33 @@ TEST_F(ShowFile, WantsCuesInTheOrderOfTheirSections) {
             "\"c\" of cue 2.5 (cues play their sections in the order of the show, each section once)\n");
 }
 
+TEST_F(ShowFile, CuesNeedGatesOfTheShow) {
+  const Show show = loaded(std::string(kHead) + std::string(kSection) +
+                           "gates: [trap closed, lift level]\n"
+                           "cues: [{number: \"1\", section: a, gates: [lift level, trap closed]}]\n")
+                        .show;
+  EXPECT_EQ(show.gates, (std::vector<std::string>{"trap closed", "lift level"}));
+  EXPECT_EQ(show.cues[0].gates, 3U);
+}
+
+TEST_F(ShowFile, WantsGatesThatTheShowListsOnce) {
+  EXPECT_EQ(
+      errors_with("gates: [trap closed, trap closed, \"\"]\n"
+                  "cues: [{number: \"1\", section: a, gates: [trap close, x]}]\n"),
+      "show.yaml:6:22: error: gates[1]: a second gate has the name \"trap closed\" (once will do)\n"
+      "show.yaml:6:35: error: gates[2]: a gate without a name (such as \"trap closed\")\n"
+      "show.yaml:7:42: error: cues[0].gates[0]: no gate has the name \"trap close\" (did you mean \"trap closed\"?)\n"
+      "show.yaml:7:54: error: cues[0].gates[1]: no gate has the name \"x\" (gates: trap closed)\n");
+  EXPECT_EQ(errors_with("cues: [{number: \"1\", section: a, gates: trap}]\n"),
+            "show.yaml:6:41: error: cues[0].gates: no gate has the name \"trap\" (the show lists them: gates: "
+            "[\"trap\"])\n");
+  std::string many = "gates: [";
+  for (int g = 0; g < 33; ++g) many += (g > 0 ? ", g" : "g") + std::to_string(g);
+  EXPECT_EQ(errors_with(many + "]\n"),
+            "show.yaml:6:159: error: gates[32]: more than 32 gates (one that stands for several, by their contacts in "
+            "series)\n");
+}
+
 TEST_F(ShowFile, KnowsWhichSectionsThereAre) {
   EXPECT_EQ(errors_of("sections: [{name: growth, from: {cells: a.csv}, start: count 1}]\n"
                       "cues: [{number: \"1\", section: grwth}, {number: \"2\", section: x, continue: auto}]\n"),
