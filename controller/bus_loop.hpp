@@ -74,6 +74,21 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::vector<NodeIndex> quarantined() const;
   /// Nodes that are not confirmed to show what they should now, those in quarantine among them. O(nodes)
   [[nodiscard]] std::size_t unconfirmed() const noexcept;
+  /// What is known of a node.
+  struct NodeStanding {
+    NodeIndex node;
+    bool right = false;        ///< confirmed to show what it should now
+    bool silent = false;       ///< it has not answered what it was asked last
+    bool quarantined = false;  ///< asked only from time to time
+  };
+  [[nodiscard]] std::size_t nodes() const noexcept { return nodes_.size(); }
+  /// @param position of the node on this bus, < nodes()
+  [[nodiscard]] NodeStanding standing(std::size_t position) const noexcept {
+    const NodeState& node = nodes_[position];
+    return {node.address.node, node.right, node.misses > 0, node.quarantined};
+  }
+  /// False: what its nodes show is taken for granted once it was sent.
+  [[nodiscard]] bool verifies() const noexcept { return can_.readback; }
   /// How late the last bit of each latch left, as far as the loop can know.
   [[nodiscard]] const Lateness& lateness() const noexcept { return lateness_; }
   /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not late.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr Duration kLook = milliseconds(200);          // at a port that has no handle, or has been unplugged
 constexpr Duration kTroubled = milliseconds(20);       // a wire that says again and again that it is gone
+constexpr Duration kCount = milliseconds(100);         // counters are told so often
 constexpr Duration kHandedOverLate = microseconds(1);  // what is due a moment from now is as good as due
 
 }  // namespace
@@ -74,6 +75,26 @@ void BusThread::note(Instant now) noexcept {
   if (unconfirmed == 0 && times_[lit_].confirmed == kNever) times_[lit_].confirmed = now;
   unconfirmed_.store(unconfirmed, std::memory_order_relaxed);
   settled_.store(loop_.settled(), std::memory_order_relaxed);
+  tell_board(now);
+}
+
+void BusThread::tell_board(Instant now) noexcept {
+  if (counted_at_ == Instant::min() || now - counted_at_ >= kCount) {
+    counted_at_ = now;
+    counters_.write(loop_.counters());
+  }
+  if (board_ == nullptr) return;
+  std::size_t quarantined = 0;
+  for (std::size_t i = 0; i < loop_.nodes(); ++i) {
+    const auto node = loop_.standing(i);
+    quarantined += node.quarantined ? 1 : 0;
+    NodeBoard::View view = board_->at(node.node.at());
+    if (node.right) view.shown = static_cast<std::uint32_t>(loop_.lit());
+    view.flags = (node.right ? NodeBoard::kRight : 0U) | (node.silent ? NodeBoard::kSilent : 0U) |
+                 (node.quarantined ? NodeBoard::kQuarantined : 0U) | (loop_.verifies() ? 0U : NodeBoard::kUnverified);
+    board_->put(node.node.at(), view);
+  }
+  quarantined_.store(quarantined, std::memory_order_relaxed);
 }
 
 }  // namespace footlight::app

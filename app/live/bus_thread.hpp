@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "app/live/node_board.hpp"
+#include "app/live/seqlock.hpp"
 #include "app/live/shared_target.hpp"
 #include "app/live/waiting.hpp"
 #include "controller/bus_loop.hpp"
@@ -39,6 +41,8 @@ class BusThread {
   BusThread(const BusThread&) = delete;
   BusThread& operator=(const BusThread&) = delete;
 
+  /// Before `start`. @param board told what becomes of each node; borrowed
+  void tell(NodeBoard& board) { board_ = &board; }
   void start();
   void stop();
   void wake() const noexcept { waiting_.wake(); }
@@ -46,6 +50,10 @@ class BusThread {
   // Any thread.
   [[nodiscard]] bool settled() const noexcept { return settled_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::size_t unconfirmed() const noexcept { return unconfirmed_.load(std::memory_order_relaxed); }
+
+  /// Not older than a tenth of a second, as long as the thread has something to do.
+  [[nodiscard]] controller::BusCounters counters() const noexcept { return counters_.read(); }
+  [[nodiscard]] std::size_t quarantined() const noexcept { return quarantined_.load(std::memory_order_relaxed); }
 
   // After `stop`.
   [[nodiscard]] const controller::Lateness& wake_lateness() const { return wake_lateness_; }
@@ -60,6 +68,7 @@ class BusThread {
   /// @return when it wants to be called again
   Instant step(Instant now) noexcept;
   void note(Instant now) noexcept;
+  void tell_board(Instant now) noexcept;
 
   controller::BusLoop& loop_;
   std::function<int()> poll_handle_;
@@ -69,6 +78,10 @@ class BusThread {
   std::atomic<bool> stopping_{false};
   std::atomic<bool> settled_{false};
   std::atomic<std::size_t> unconfirmed_{0};
+  std::atomic<std::size_t> quarantined_{0};
+  SeqLock<controller::BusCounters> counters_;
+  Instant counted_at_ = Instant::min();
+  NodeBoard* board_ = nullptr;
   controller::Lateness wake_lateness_;
   std::vector<SwitchTimes> times_;
   std::size_t lit_ = 0;

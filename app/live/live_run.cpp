@@ -61,6 +61,7 @@ class LiveRun {
                                                      wires.schedule->switches().size()));
       const auto nodes = static_cast<std::size_t>(std::ranges::count(rig.nodes, BusIndex::of(b), &Node::bus));
       buses_.push_back({rig.buses[b].name, nodes, nodes});
+      if (options.nodes != nullptr) threads_.back()->tell(*options.nodes);
     }
   }
 
@@ -113,6 +114,7 @@ class LiveRun {
   std::size_t told_ = 0;
   ShowState state_;
   std::vector<BusView> buses_;
+  std::shared_ptr<const Plan> way_;
   bool ended_ = false;  ///< by the desk
   bool nobody_ = true;  ///< is left at the desk
 };
@@ -161,6 +163,7 @@ void LiveRun::look_on() {
   state_ = cue_.state();
   listen_to_the_desk();
   if (const auto news = resets_.look(state_.reset)) {
+    way_ = news->way;
     tell(news->command);
     if (options_.reset) options_.reset(news->text);
   }
@@ -178,8 +181,12 @@ void LiveRun::look_on() {
 
 void LiveRun::listen_to_the_desk() {
   if (!options_.desk) return;
-  for (std::size_t b = 0; b < buses_.size(); ++b) buses_[b].unconfirmed = threads_[b]->unconfirmed();
-  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_});
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    buses_[b].unconfirmed = threads_[b]->unconfirmed();
+    buses_[b].quarantined = threads_[b]->quarantined();
+    buses_[b].counters = threads_[b]->counters();
+  }
+  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*wires_.schedule, way_});
   for (const controller::Command& command : wishes.commands) tell(command);
   ended_ = wishes.ends;
   nobody_ = wishes.nobody;

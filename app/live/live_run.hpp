@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/bus_figures.hpp"
 #include "app/live/cue_thread.hpp"
+#include "app/live/node_board.hpp"
 #include "app/live/reset_moves.hpp"
 #include "app/wire_log/wire_log.hpp"
 #include "controller/tempo_limit.hpp"
@@ -72,6 +74,8 @@ struct BusView {
   std::string_view name;
   std::size_t nodes = 0;
   std::size_t unconfirmed = 0;
+  std::size_t quarantined = 0;  ///< known where LiveOptions has a board
+  controller::BusCounters counters{};
 };
 
 /// What the desk sees.
@@ -79,6 +83,8 @@ struct DeskView {
   ShowState show;
   bool roll_called = false;
   std::vector<BusView> buses;
+  const controller::CueSchedule* schedule = nullptr;  ///< what lamps show; not to be kept
+  std::shared_ptr<const Plan> way{};                  ///< the reset move that was planned last; null: none was
 };
 
 /// What the desk wants.
@@ -111,6 +117,8 @@ struct LiveOptions {
   std::function<void(const std::string& line)> moment;  ///< a line for each cue and switch
   /// Told of all that goes over the wires, by the threads of the buses; borrowed. Null: nobody.
   WireLog* wire_log = nullptr;
+  /// Told what becomes of every node of the rig, by the threads of the buses; borrowed. Null: nobody.
+  NodeBoard* nodes = nullptr;
   /// The roll call is over: nodes that have not confirmed the opening.
   std::function<void(std::size_t unconfirmed)> ready;
 };

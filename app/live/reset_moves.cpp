@@ -55,6 +55,7 @@ std::optional<ResetMoves::News> ResetMoves::look(const controller::Rehearsal::Re
   answered_ = asked.id;
   News news;
   news.text = found->second.text;
+  news.way = found->second.way;
   news.command.reset = asked.id;
   news.command.kind = controller::Command::Kind::reset_impossible;
   if (found->second.first) {
@@ -72,7 +73,8 @@ void ResetMoves::plan(const Key& key) {
     if (!plan_way_) return {Error{ErrorKind::refused, "nobody plans ways here"}, {}};
     auto way = plan_way_(key.first, key.second, abandoned_);
     if (!way) return {std::move(way).error(), {}};
-    return {controller::build_reset(show_, *way, rig_, schedule_), text_of(*way)};
+    return {controller::build_reset(show_, *way, rig_, schedule_), text_of(*way),
+            std::make_shared<const Plan>(*std::move(way))};
   });
 }
 
@@ -80,7 +82,7 @@ ResetMoves::Known ResetMoves::keep(Made made) {
   if (!made.move) return {std::nullopt, "no reset move: " + made.move.error().message};
   const auto first = schedule_.add(std::move(made.move).value());
   if (!first) return {std::nullopt, "no reset move: there have been too many in this run, or it has too many steps"};
-  return {first, std::move(made.text)};
+  return {first, std::move(made.text), std::move(made.way)};
 }
 
 }  // namespace footlight::app

@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,8 +34,9 @@ class ResetMoves {
   ResetMoves& operator=(const ResetMoves&) = delete;
 
   struct News {
-    controller::Command command;  ///< for the rehearsal
-    std::string text;             ///< for people
+    controller::Command command;        ///< for the rehearsal
+    std::string text;                   ///< for people
+    std::shared_ptr<const Plan> way{};  ///< where everybody walks; null: there is none
   };
   /// Does not wait. @param asked what the rehearsal asks for now @return once for each answer
   std::optional<News> look(const controller::Rehearsal::Reset& asked);
@@ -44,10 +46,12 @@ class ResetMoves {
   struct Made {
     Result<controller::ResetMove> move;
     std::string text;
+    std::shared_ptr<const Plan> way{};
   };
   struct Known {
     std::optional<std::size_t> first;  ///< none: there is no way
     std::string text;
+    std::shared_ptr<const Plan> way{};
   };
   void plan(const Key& key);
   [[nodiscard]] Known keep(Made made);

@@ -123,11 +123,14 @@ std::string StateText::json(const DeskView& view) const {
     return cue < 0 ? Json(nullptr) : Json(plays_[static_cast<std::size_t>(cue)].cue.number.to_text());
   };
   const auto left = [&](Instant at) { return at == kNever ? Json(nullptr) : Json(seconds_left(at, state.at)); };
+  const bool resets = state.phase == Phase::resets || state.phase == Phase::reset_held;
+  const bool moves = state.phase == Phase::runs || (state.phase == Phase::resets && state.goes_at == kNever);
   Json reset{{"state", app::to_text(state.reset.state)}};
   if (state.reset.state != ResetState::none) {
     reset["from_s"] = to_seconds(state.reset.from);
     reset["to_s"] = to_seconds(state.reset.to);
   }
+  if (resets) reset["at_s"] = to_seconds(state.target.show_time);
   Json buses = Json::array();
   for (const BusView& bus : view.buses) {
     buses.push_back({{"name", bus.name}, {"nodes", bus.nodes}, {"unconfirmed", bus.unconfirmed}});
@@ -136,6 +139,7 @@ std::string StateText::json(const DeskView& view) const {
   if (state.loops) loop = {{"from_s", to_seconds(state.loop.from)}, {"to_s", to_seconds(state.loop.to)}};
   const Json document{{"phase", to_text(state.phase)},
                       {"position_s", to_seconds(state.position)},
+                      {"rate", moves ? state.target.rate : 0.0},
                       {"section", section_at(state.position)},
                       {"measure", show_.tempo.measure_beat(std::floor(count))},
                       {"count", count},

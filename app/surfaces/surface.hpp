@@ -15,6 +15,7 @@ class RunDesk;
 struct Speaker {
   controller::GoSource input = controller::GoSource::lines;
   std::string name = "lines";  ///< for people and the journal: "keyboard", "osc 10.0.0.4"
+  std::uint64_t tag = 0;       ///< a surface's own; comes back with the answer
 };
 
 /// What all surfaces and the journal of a run are told, besides its state.

@@ -65,6 +65,9 @@ TEST_F(LiveRunTest, EveryMarkerShowsTheLastSwitchInTheEnd) {
   options.go = true;
   std::vector<std::string> moments;
   options.moment = [&](const std::string& line) { moments.push_back(line); };
+  NodeBoard board(small_.rig.nodes.size());
+  EXPECT_EQ(board.at(0), NodeBoard::View{}) << "nothing is known of a node that has said nothing";
+  options.nodes = &board;
   const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->unconfirmed, 0U);
@@ -73,6 +76,10 @@ TEST_F(LiveRunTest, EveryMarkerShowsTheLastSwitchInTheEnd) {
   for (const LiveBusReport& bus : report->buses) {
     EXPECT_GT(bus.deliveries, 0U) << bus.name;
     EXPECT_GT(bus.latch.count, 0U) << bus.name;
+  }
+  for (std::size_t n = 0; n < board.size(); ++n) {
+    EXPECT_EQ(board.at(n).shown, report->switches - 1) << n;
+    EXPECT_EQ(board.at(n).flags, NodeBoard::kRight) << n;
   }
   stop_serving();
   for (std::size_t n = 0; n < small_.rig.nodes.size(); ++n) {

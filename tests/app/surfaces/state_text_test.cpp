@@ -70,6 +70,7 @@ TEST_F(StateTextTest, TheJsonHasEveryFigure) {
   view_.show.standby = 2;
   view_.show.position = instant_at(8.25);
   view_.show.ends_at = instant_at(103.75);
+  view_.show.target.rate = 0.8;
   view_.show.loops = true;
   view_.show.loop = {instant_at(8), instant_at(12)};
   const auto json = nlohmann::json::parse(StateText(small_.show, small_.plan, plays_).json(view_))["state"];
@@ -84,7 +85,22 @@ TEST_F(StateTextTest, TheJsonHasEveryFigure) {
   EXPECT_EQ(json["goes_in_s"], nullptr);
   EXPECT_EQ(json["loop"]["to_s"], 12);
   EXPECT_EQ(json["reset"]["state"], "none");
+  EXPECT_EQ(json["rate"], 0.8);
   EXPECT_EQ(json["buses"][0]["name"], "left");
+}
+
+TEST_F(StateTextTest, TheJsonSaysHowFarAResetMoveIsAndWhetherItGoesOn) {
+  view_.show.phase = Phase::resets;
+  view_.show.position = instant_at(8);
+  view_.show.target.show_time = milliseconds(1500);
+  const StateText text(small_.show, small_.plan, plays_);
+  auto json = nlohmann::json::parse(text.json(view_))["state"];
+  EXPECT_EQ(json["reset"]["at_s"], 1.5);
+  EXPECT_EQ(json["rate"], 1);
+  view_.show.phase = Phase::reset_held;
+  json = nlohmann::json::parse(text.json(view_))["state"];
+  EXPECT_EQ(json["reset"]["at_s"], 1.5);
+  EXPECT_EQ(json["rate"], 0);
 }
 
 }  // namespace
