@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 
 #include "config/nearest.hpp"
 #include "config/show_parts.hpp"
@@ -232,6 +233,24 @@ void read_looks(ShowReading& show, MappingReader looks) {
   for (const auto& [key, role] : kRoles) {
     if (auto look = looks.mapping(key)) show.show().looks[role] = read_look(std::move(*look));
   }
+}
+
+void read_time(ShowReading& show, MappingReader time) {
+  constexpr std::array kRates{FrameRate::fps24, FrameRate::fps25, FrameRate::fps2997_drop, FrameRate::fps30};
+  TimeRules& out = show.show().time;
+  out.source = time.text("source").value_or("");
+  const auto rate = time.choice("frame_rate");
+  if (rate) out.rate = kRates.at(static_cast<std::size_t>(*rate));
+  if (const auto start = time.written("start"); start && rate) {
+    const auto code = parse_timecode(start->text, out.rate);
+    if (code) out.start = time_of(*code);
+    if (!code) {
+      time.error(*start, in_quotes(start->text) + " is no timecode of " + std::string(to_text(out.rate)) + " frames",
+                 "hours, minutes, seconds and frames, as \"01:00:00:00\"");
+    }
+  }
+  out.lost = static_cast<TimeLoss>(time.choice("lost").value_or(1));
+  out.freewheel = seconds(time.quantity("freewheel").value_or(2));
 }
 
 void read_music(ShowReading& show, MappingReader music) {

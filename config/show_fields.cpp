@@ -168,6 +168,38 @@ const Listing& music_listing() {
   return kListing;
 }
 
+const Listing& time_listing() {
+  static const Listing kListing{
+      "time",
+      "Where the show's time comes from, and what happens when that fails.",
+      {
+          {.key = "source",
+           .type = Type::text,
+           .doc = "As `footlight run --time`, which goes before it: `audio:FILE`, `ltc:FILE`, `ltc:alsa:DEVICE`, "
+                  "`mtc:PORT`, `midi-clock:PORT`, `osc:PORT`.",
+           .otherwise = "the machine's own clock"},
+          {.key = "start", .type = Type::text, .doc = "Timecode of the source at count 1.", .fallback = "00:00:00:00"},
+          {.key = "frame_rate",
+           .type = Type::choice,
+           .doc = "Frames a second, in which `start` is written; LTC is taken for it until it has told its own.",
+           .fallback = "25",
+           .choices = {"24", "25", "29.97df", "30"}},
+          {.key = "lost",
+           .type = Type::choice,
+           .doc =
+               "What the show does when nothing more comes from the source: `continue` by its own clock; go on to the "
+               "`next-hold-point`, where everybody stands; `hold` at once.",
+           .fallback = "next-hold-point",
+           .choices = {"continue", "next-hold-point", "hold"}},
+          {.key = "freewheel",
+           .type = Type::time,
+           .doc = "The show goes on through a silence of the source for so long; then `lost` holds.",
+           .fallback = "2 s",
+           .range = {0.2, 60}},
+      }};
+  return kListing;
+}
+
 const Listing& cue_listing() {
   static const Listing kListing{
       "cues[]",
@@ -285,6 +317,11 @@ const Listing& show_listing() {
            .doc = "Tempo and meter.",
            .otherwise = "120 counts a minute in 4/4",
            .listing = &music_listing()},
+          {.key = "time",
+           .type = Type::mapping,
+           .doc = "A source of time: timecode, music.",
+           .otherwise = "the machine's own clock",
+           .listing = &time_listing()},
           {.key = "sections",
            .type = Type::mapping,
            .doc = "The pictures, in time; at least one.",

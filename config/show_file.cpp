@@ -26,6 +26,7 @@ void read_show(ShowReading& show, MappingReader& root) {
   if (auto performers = root.mapping("performers")) read_performers(show, std::move(*performers));
   read_absent(show, root);
   if (auto music = root.mapping("music")) read_music(show, std::move(*music));
+  if (auto time = root.mapping("time")) read_time(show, std::move(*time));
   read_sections(show, root);
   read_cues(show, root);
   if (auto looks = root.mapping("looks")) read_looks(show, std::move(*looks));

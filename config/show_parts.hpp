@@ -32,6 +32,7 @@ struct ShowReading {
 void read_stage(ShowReading& show, MappingReader stage);
 void read_performers(ShowReading& show, MappingReader performers);
 void read_music(ShowReading& show, MappingReader music);
+void read_time(ShowReading& show, MappingReader time);
 void read_sections(ShowReading& show, MappingReader& root);
 /// `keys`, `overrides` and `regions` of a section whose start and duration are known.
 void read_by_hand(ShowReading& show, MappingReader& section, Section& out);

@@ -14,6 +14,7 @@
 #include "core/look.hpp"
 #include "core/stage.hpp"
 #include "core/tempo_map.hpp"
+#include "core/timecode.hpp"
 
 namespace footlight {
 
@@ -194,6 +195,7 @@ struct Show {
   std::vector<Performer> performers;
   std::vector<Group> groups;
   TempoMap tempo;
+  TimeRules time;
   std::vector<Section> sections;   ///< ascending by start, not overlapping
   std::vector<Cue> cues;           ///< ascending by number and by section
   std::vector<std::string> gates;  ///< what has to be closed, in place, clear; at most kMostGates, unique

@@ -73,8 +73,48 @@ TEST_F(ShowFile, FillsWhatIsNotWrittenWithDefaults) {
   EXPECT_EQ(show.cues[0].number.to_text(), "1");
   EXPECT_EQ(show.looks.size(), static_cast<std::size_t>(kLampRoles));
   EXPECT_EQ(show.announce_counts, 4);
+  EXPECT_EQ(show.time.source, "");
+  EXPECT_EQ(show.time.start, Duration{});
+  EXPECT_EQ(show.time.rate, FrameRate::fps25);
+  EXPECT_EQ(show.time.lost, TimeLoss::next_hold);
+  EXPECT_EQ(show.time.freewheel, milliseconds(2000));
   EXPECT_EQ(show.rig_file, "");
   EXPECT_EQ(all.files, (std::vector<std::string>{folder_.path("show.yaml").string(), folder_.path("a.csv").string()}));
+}
+
+TEST_F(ShowFile, TakesTheRulesForASourceOfTime) {
+  const Show show = loaded(std::string(kHead) + std::string(kSection) +
+                           "time: {source: \"ltc:tape.wav\", start: \"01:00:00;00\", frame_rate: 29.97df, "
+                           "lost: continue, freewheel: 500 ms}\n")
+                        .show;
+  EXPECT_EQ(show.time.source, "ltc:tape.wav");
+  EXPECT_EQ(show.time.start, time_of({1, 0, 0, 0, FrameRate::fps2997_drop}));
+  EXPECT_EQ(show.time.rate, FrameRate::fps2997_drop);
+  EXPECT_EQ(show.time.lost, TimeLoss::go_on);
+  EXPECT_EQ(show.time.freewheel, milliseconds(500));
+}
+
+TEST_F(ShowFile, RefusesRulesForASourceOfTimeThatNobodyCouldKeep) {
+  const auto time = [&](const std::string& text) { return errors_with("time: {" + text + "}\n"); };
+  EXPECT_EQ(time("start: \"01:00:00:25\""),
+            "show.yaml:6:15: error: time.start: \"01:00:00:25\" is no timecode of 25 frames (hours, minutes, seconds "
+            "and frames, as \"01:00:00:00\")\n");
+  EXPECT_EQ(time("start: 3600"),
+            "show.yaml:6:15: error: time.start: \"3600\" is no timecode of 25 frames (hours, minutes, seconds and "
+            "frames, as \"01:00:00:00\")\n");
+  EXPECT_EQ(time("frame_rate: 29.97df, start: \"00:01:00;00\""),
+            "show.yaml:6:36: error: time.start: \"00:01:00;00\" is no timecode of 29.97 drop-frame frames (hours, "
+            "minutes, seconds and frames, as \"01:00:00:00\")\n");
+  EXPECT_EQ(time("frame_rate: 23"),
+            "show.yaml:6:20: error: time.frame_rate: \"23\" is not one of the choices (did you mean \"24\"?)\n");
+  EXPECT_EQ(time("lost: next"),
+            "show.yaml:6:14: error: time.lost: \"next\" is not one of the choices (did you mean "
+            "\"next-hold-point\"?)\n");
+  EXPECT_EQ(
+      time("freewheel: 2"),
+      "show.yaml:6:19: error: time.freewheel: \"2\" has no unit (write for example \"3.2 s\"; units: s, ms, min)\n");
+  EXPECT_EQ(time("freewheel: 0 s"), "show.yaml:6:19: error: time.freewheel: \"0 s\" is out of range (0.2 to 60 s)\n");
+  EXPECT_EQ(time("sources: ltc"), "show.yaml:6:8: error: time.sources: unknown key (did you mean \"source\"?)\n");
 }
 
 TEST_F(ShowFile, KnowsEveryPlannerModel) {
