@@ -13,10 +13,18 @@ namespace {
 
 constexpr Duration kResetLead = milliseconds(300);  // for preloads that have not come yet
 
+std::optional<Outcome> refusal(Bars bars) {
+  if ((bars & kEmergencyHold) != 0) return Outcome::emergency_hold;
+  if ((bars & kHoldPressed) != 0) return Outcome::hold_pressed;
+  if ((bars & kGates) != 0) return Outcome::gate_open;
+  if ((bars & kNotReady) != 0) return Outcome::not_ready;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view to_text(Outcome outcome) {
-  constexpr std::array<std::string_view, 18> kTexts{
+  constexpr std::array<std::string_view, 22> kTexts{
       "done",
       "the cue starts",
       "the show goes on",
@@ -34,6 +42,10 @@ std::string_view to_text(Outcome outcome) {
       "this is the top of the show",
       "no reset move is asked for",
       "the loop has no length: nobody stands at its beginning before its end",
+      "a gate that it needs is open, or nobody knows",
+      "a hold button is pressed",
+      "emergency hold: when people are safe and the button is out, acknowledge it (ok)",
+      "the show is not ready",
       "lost: too many commands at once",
   };
   return kTexts.at(static_cast<std::size_t>(outcome));
@@ -59,6 +71,7 @@ void Rehearsal::begin_at(Instant position) noexcept {
 void Rehearsal::step(Instant now) noexcept {
   now_ = now;
   engine_.step(now);
+  obey_bars(now);
   if (resets() && !move_held_) {
     while (rows_lit_ < rows() && row_at(rows_lit_) <= now) ++rows_lit_;
     if (row_at(rows()) <= now) arrive();
@@ -121,7 +134,7 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
   const auto carry_out = [&] {
     switch (command.kind) {
       case Command::Kind::go:
-        return go(command.source, now);
+        return go(command, now);
       case Command::Kind::hold:
         return hold(now);
       case Command::Kind::hold_at_end:
@@ -162,8 +175,8 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
   return outcome;
 }
 
-Outcome Rehearsal::go(GoSource source, Instant now) noexcept {
-  switch (guard_.press(source, now)) {
+Outcome Rehearsal::go(const Command& command, Instant now) noexcept {
+  switch (guard_.press(command.source, command.input, now)) {
     case GoGuard::Verdict::too_soon:
       return Outcome::too_soon;
     case GoGuard::Verdict::held:
@@ -173,6 +186,8 @@ Outcome Rehearsal::go(GoSource source, Instant now) noexcept {
     case GoGuard::Verdict::taken:
       break;
   }
+  const bool moves = runs() || (resets() && !move_held_);
+  if (const auto against = refusal(barred()); against && !moves) return *against;
   return go_on(now);
 }
 
@@ -216,6 +231,7 @@ Outcome Rehearsal::step_count(Instant now) noexcept {
   if (runs()) return Outcome::cue_runs;
   if (reset_.state != ResetState::none) return Outcome::being_planned;
   if (engine_.finished()) return Outcome::nothing_left;
+  if (const auto against = refusal(barred())) return *against;
   const Instant here = engine_.position();
   double count = std::floor(tempo_.count_at(here)) + 1;
   while (tempo_.at(count) <= here) ++count;
@@ -327,7 +343,49 @@ void Rehearsal::aim() noexcept {
   if (count_) consider(*count_);
   if (loop_) consider(loop_->to);
   if (reset_.state != ResetState::none) consider(reset_.from);
+  // A cue that would follow by itself and may not.
+  const auto& plays = engine_.plays();
+  for (std::size_t c = *engine_.active(); c + 1 < plays.size() && plays[c].gap_after; ++c) {
+    if ((bars_ & kHolding & bars_of(plays[c + 1].cue)) == 0) continue;
+    consider(plays[c].to);
+    break;
+  }
   engine_.stop_at(stop);
+}
+
+// ---- what stands against walking
+
+void Rehearsal::set_bars(Bars bars, Instant now) noexcept {
+  step(now);
+  bars_ = bars;
+  obey_bars(now);
+  aim();
+  step(now);
+}
+
+void Rehearsal::obey_bars(Instant now) noexcept {
+  const bool moves = runs() || (resets() && !move_held_);
+  if (moves && (barred() & kHolding) != 0) (void)hold(now);
+}
+
+Bars Rehearsal::bars_at(Instant position) const noexcept {
+  for (const CuePlay& play : engine_.plays()) {
+    if (position <= play.to) return bars_of(play.cue);
+  }
+  return bars_of(engine_.plays().back().cue);
+}
+
+Bars Rehearsal::barred() const noexcept {
+  Bars needed = ~kGates;
+  if (resets() || stands_for_reset()) {
+    // Nobody knows where on the stage the way back leads: what either place needs.
+    needed = bars_at(reset_.from) | bars_at(reset_.to);
+  } else if (engine_.active()) {
+    needed = bars_of(engine_.plays()[*engine_.active()].cue);
+  } else if (const auto standby = engine_.standby()) {
+    needed = bars_of(engine_.plays()[*standby].cue);
+  }
+  return bars_ & needed;
 }
 
 // ---- the rows of a reset move

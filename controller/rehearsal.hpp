@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "controller/bars.hpp"
 #include "controller/cue_engine.hpp"
 #include "controller/go_guard.hpp"
 #include "controller/stands.hpp"
@@ -34,6 +35,7 @@ struct Command {
   };
   Kind kind = Kind::go;
   GoSource source = GoSource::lines;
+  std::uint8_t input = 0;  ///< which one presses GO, for the guard
   Instant position{};
   Instant until{};
   int percent = 100;
@@ -63,6 +65,10 @@ enum class Outcome : std::uint8_t {
   at_the_top,
   no_reset,  ///< none is asked for
   empty_range,
+  gate_open,     ///< that the cue needs, or nobody knows
+  hold_pressed,  ///< a hold button
+  emergency_hold,
+  not_ready,
   lost,  ///< it never reached the rehearsal: there were too many
 };
 /// For whoever pressed: "the cue runs".
@@ -108,6 +114,9 @@ class Rehearsal {
 
   /// Lets everything up to and including `now` happen. `now` never goes back.
   void step(Instant now) noexcept;
+  /// What stands against walking from now on. A cue that runs and is concerned is held at once; one that would follow
+  /// by itself does not, and the show stands at the end of the set before it. When a bar goes nothing moves: GO does.
+  void set_bars(Bars bars, Instant now) noexcept;
   /// O(log switches) and one `notice`.
   Outcome apply(const Command& command, Instant now) noexcept;
 
@@ -121,10 +130,14 @@ class Rehearsal {
   [[nodiscard]] bool holds_at_end() const noexcept { return hold_.has_value(); }
   /// Clock time at which the count-in ends; kNever without one.
   [[nodiscard]] Instant goes_at() const noexcept;
+  /// What stands against whatever would come next, or holds what runs.
+  [[nodiscard]] Bars barred() const noexcept;
+  /// Bit i: input i of the GO guard is switched off.
+  [[nodiscard]] std::uint64_t inputs_off() const noexcept { return guard_.off(); }
   [[nodiscard]] const CueEngine& engine() const noexcept { return engine_; }
 
  private:
-  Outcome go(GoSource source, Instant now) noexcept;
+  Outcome go(const Command& command, Instant now) noexcept;
   Outcome go_on(Instant now) noexcept;
   Outcome hold(Instant now) noexcept;
   Outcome hold_at_end(Instant now) noexcept;
@@ -138,6 +151,8 @@ class Rehearsal {
   Outcome start_reset(Instant now) noexcept;
   void arrive() noexcept;
   void aim() noexcept;
+  void obey_bars(Instant now) noexcept;
+  [[nodiscard]] Bars bars_at(Instant position) const noexcept;
   [[nodiscard]] bool runs() const noexcept { return engine_.active() && !engine_.frozen(); }
   [[nodiscard]] bool resets() const noexcept { return move_ != nullptr; }
   [[nodiscard]] bool stands_for_reset() const noexcept;
@@ -153,6 +168,7 @@ class Rehearsal {
   Settings settings_;
   Notice notice_;
   GoGuard guard_;
+  Bars bars_ = 0;
   Instant now_{};
   std::optional<Instant> hold_;   ///< stop here: end of the set
   std::optional<Instant> count_;  ///< stop here: one count

@@ -391,6 +391,106 @@ TEST(Rehearsal, BackFromTheTopIsRefused) {
   EXPECT_EQ(bench.tell(Kind::back), Outcome::at_the_top);
 }
 
+/// The second cue needs gate 0, the third one gate 1.
+std::vector<Cue> gated(ContinueMode mode = ContinueMode::manual) {
+  std::vector<Cue> cues{cue_of("1", 0, mode), cue_of("2", 1), cue_of("3", 2)};
+  cues[1].gates = 1;
+  cues[2].gates = 2;
+  return cues;
+}
+
+TEST(Rehearsal, GoIsRefusedWhileAGateOfTheCueIsOpen) {
+  Bench bench(gated());
+  bench.rehearsal->set_bars(1, bench.clock.now());
+  EXPECT_EQ(bench.rehearsal->barred(), 0U) << "the first cue needs none";
+  EXPECT_EQ(bench.go(), Outcome::cue_started);
+  bench.run_for(10);
+  ASSERT_EQ(bench.position(), instant_at(4));
+  EXPECT_EQ(bench.rehearsal->barred(), 1U);
+  EXPECT_EQ(bench.go(), Outcome::gate_open);
+  EXPECT_EQ(bench.tell(Kind::step), Outcome::gate_open);
+  bench.rehearsal->set_bars(2, bench.clock.now());
+  bench.run_for(10);
+  EXPECT_EQ(bench.position(), instant_at(4)) << "a gate that closes is no GO";
+  EXPECT_EQ(bench.go(), Outcome::cue_started);
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::runs) << "the third cue's gate is none of its concern";
+}
+
+TEST(Rehearsal, AGateThatIsLostHoldsTheCueAtOnceUntilSomebodyPressesGo) {
+  Bench bench(gated());
+  bench.go();
+  bench.run_for(10);
+  bench.go();
+  bench.run_for(1);
+  ASSERT_EQ(bench.position(), instant_at(5));
+  bench.rehearsal->set_bars(1, bench.clock.now());
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::stands);
+  EXPECT_EQ(bench.position(), instant_at(5));
+  EXPECT_EQ(bench.go(), Outcome::gate_open);
+  bench.rehearsal->set_bars(0, bench.clock.now());
+  bench.run_for(10);
+  EXPECT_EQ(bench.position(), instant_at(5));
+  EXPECT_EQ(bench.go(), Outcome::goes_on);
+}
+
+TEST(Rehearsal, ACueThatWouldFollowAndMayNotIsNotBegun) {
+  for (const bool early : {false, true}) {
+    Bench bench(gated(ContinueMode::auto_follow));
+    if (early) bench.rehearsal->set_bars(1, bench.clock.now());
+    bench.go();
+    bench.run_for(3);
+    if (!early) bench.rehearsal->set_bars(1, bench.clock.now());
+    EXPECT_EQ(bench.rehearsal->phase(), Phase::runs) << "this cue does not need it";
+    bench.run_for(20);
+    EXPECT_EQ(bench.position(), instant_at(4));
+    EXPECT_EQ(bench.engine->standby(), 1U);
+    EXPECT_LT(bench.schedule->switches()[bench.lit()].time, instant_at(4)) << "nobody is sent on";
+    EXPECT_EQ(bench.go(), Outcome::gate_open);
+    bench.rehearsal->set_bars(0, bench.clock.now());
+    EXPECT_EQ(bench.go(), Outcome::cue_started);
+  }
+}
+
+TEST(Rehearsal, AGateThatClosesInTimeLetsTheNextCueFollow) {
+  Bench bench(gated(ContinueMode::auto_follow));
+  bench.rehearsal->set_bars(1, bench.clock.now());
+  bench.go();
+  bench.run_for(3);
+  bench.rehearsal->set_bars(0, bench.clock.now());
+  bench.run_for(3);
+  EXPECT_EQ(bench.engine->active(), 1U);
+}
+
+TEST(Rehearsal, AHoldButtonHoldsWhateverRunsAlsoAResetMove) {
+  Bench bench;
+  bench.go();
+  bench.run_for(10);
+  bench.tell(Kind::back);
+  bench.plan_what_is_wanted();
+  ASSERT_EQ(bench.go(), Outcome::reset_started);
+  bench.run_for(1);
+  bench.rehearsal->set_bars(kHoldPressed, bench.clock.now());
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::reset_held);
+  EXPECT_EQ(bench.go(), Outcome::hold_pressed);
+  bench.rehearsal->set_bars(kEmergencyHold | kHoldPressed, bench.clock.now());
+  EXPECT_EQ(bench.go(), Outcome::emergency_hold);
+  bench.rehearsal->set_bars(0, bench.clock.now());
+  EXPECT_EQ(bench.go(), Outcome::goes_on);
+}
+
+TEST(Rehearsal, AShowThatIsNotReadyRefusesGoAndStopsNothing) {
+  Bench bench;
+  bench.rehearsal->set_bars(kNotReady, bench.clock.now());
+  EXPECT_EQ(bench.go(), Outcome::not_ready);
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::stands);
+  bench.rehearsal->set_bars(0, bench.clock.now());
+  bench.go();
+  bench.run_for(1);
+  bench.rehearsal->set_bars(kNotReady, bench.clock.now());
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::runs);
+  EXPECT_EQ(bench.go(), Outcome::cue_runs);
+}
+
 // ---- any sequence of commands
 
 /// Sees every step that is made, by rules of its own: nothing here asks the rehearsal why it does something.
@@ -501,6 +601,32 @@ TEST(RehearsalProperty, WhateverIsPressedTheLampsAreAFunctionOfThePositionAndNob
       run_watched(bench, watch, bench.clock.now() + seconds(60));
     }
     RC_ASSERT(bench.position() == instant_at(20));
+  }));
+}
+
+TEST(RehearsalProperty, NothingRunsPastABarThatConcernsIt) {
+  EXPECT_TRUE(rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint64_t>());
+    std::vector<Cue> cues = any_cues(rng);
+    for (Cue& cue : cues) cue.gates = static_cast<std::uint32_t>(rng.below(4));
+    Bench bench(cues);
+    for (int i = 0; i < 100; ++i) {
+      if (rng.below(2) == 0) {
+        bench.rehearsal->set_bars(rng.below(4) | (rng.below(8) == 0 ? kHoldPressed : 0), bench.clock.now());
+      } else {
+        (void)bench.rehearsal->apply(any_command(rng), bench.clock.now());
+      }
+      if (rng.below(3) > 0) bench.plan_what_is_wanted();
+      const Instant end = bench.clock.now() + milliseconds(static_cast<std::int64_t>(rng.below(3000)));
+      do {
+        if ((bench.rehearsal->barred() & kHolding) != 0) {
+          const Phase phase = bench.rehearsal->phase();
+          RC_ASSERT(phase == Phase::stands || phase == Phase::reset_held || phase == Phase::finished);
+        }
+        bench.clock.advance_to(std::min(end, bench.rehearsal->next_event()));
+        bench.rehearsal->step(bench.clock.now());
+      } while (bench.clock.now() < end);
+    }
   }));
 }
 
