@@ -49,11 +49,17 @@ void CueThread::press_go_whenever_it_waits() noexcept {
   waiting_.wake();
 }
 
+void CueThread::set_bars(controller::Bars bars) noexcept {
+  if (bars_.exchange(bars, std::memory_order_acq_rel) != bars) waiting_.wake();
+}
+
 void CueThread::run() noexcept {
   real_time_ = ask_for_real_time();
   while (!stopping_.load(std::memory_order_relaxed)) {
     const Instant now = clock_.now();
     rehearsal_.step(now);
+    const controller::Bars bars = bars_.load(std::memory_order_acquire);
+    if (bars != std::exchange(barred_, bars)) rehearsal_.set_bars(bars, now);
     take_commands(now);
     if (by_itself_.load(std::memory_order_relaxed)) press_by_itself(now);
     publish(now);
@@ -103,6 +109,8 @@ void CueThread::publish(Instant now) noexcept {
   state.goes_at = rehearsal_.goes_at();
   if (engine.active()) state.ends_at = engine.clock_at(engine.plays()[*engine.active()].to);
   state.at = now;
+  state.barred = rehearsal_.barred();
+  state.inputs_off = rehearsal_.inputs_off();
   state.target = target;
   state_.write(state);
   const bool news = target.current != last_.current || target.next != last_.next || target.next_at != last_.next_at;

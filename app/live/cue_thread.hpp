@@ -24,14 +24,16 @@ struct ShowState {
   bool loops = false;
   controller::Rehearsal::Loop loop{};
   bool holds_at_end = false;
-  int percent = 100;         ///< tempo
-  int limit_percent = 200;   ///< of this cue
-  int active = -1;           ///< cue that runs, is frozen or waits to run
-  int standby = -1;          ///< cue that the next GO starts
-  Instant position{};        ///< show time
-  Instant goes_at = kNever;  ///< clock time at which a count-in ends
-  Instant ends_at = kNever;  ///< clock time at which the active cue ends
-  Instant at{};              ///< when this was so
+  int percent = 100;             ///< tempo
+  int limit_percent = 200;       ///< of this cue
+  int active = -1;               ///< cue that runs, is frozen or waits to run
+  int standby = -1;              ///< cue that the next GO starts
+  Instant position{};            ///< show time
+  Instant goes_at = kNever;      ///< clock time at which a count-in ends
+  Instant ends_at = kNever;      ///< clock time at which the active cue ends
+  Instant at{};                  ///< when this was so
+  controller::Bars barred = 0;   ///< what stands against whatever would come next, or holds what runs
+  std::uint64_t inputs_off = 0;  ///< bit i: input i of the GO guard is switched off
   controller::BusTarget target{};
 };
 
@@ -60,6 +62,8 @@ class CueThread {
   bool tell(const controller::Command& command) noexcept;
   std::optional<Answer> answer() noexcept { return answers_.pop(); }
   void press_go_whenever_it_waits() noexcept;
+  /// What stands against walking; never lost.
+  void set_bars(controller::Bars bars) noexcept;
 
   // Any thread.
   [[nodiscard]] ShowState state() const noexcept { return state_.read(); }
@@ -86,6 +90,8 @@ class CueThread {
   SeqLock<ShowState> state_;
   std::atomic<bool> stopping_{false};
   std::atomic<bool> by_itself_{false};
+  std::atomic<controller::Bars> bars_{0};
+  controller::Bars barred_ = 0;  ///< as the rehearsal knows it
   GoWhenWaiting go_;
   bool told_ = false;
   bool real_time_ = false;

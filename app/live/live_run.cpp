@@ -187,6 +187,7 @@ void LiveRun::listen_to_the_desk() {
     buses_[b].counters = threads_[b]->counters();
   }
   const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*wires_.schedule, way_});
+  cue_.set_bars(wishes.bars);
   for (const controller::Command& command : wishes.commands) tell(command);
   ended_ = wishes.ends;
   nobody_ = wishes.nobody;

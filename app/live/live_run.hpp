@@ -78,6 +78,13 @@ struct BusView {
   controller::BusCounters counters{};
 };
 
+/// A gate of the show, as its input tells it.
+struct GateView {
+  enum class State : std::uint8_t { closed, open, lost, by_word };
+  std::string name;
+  State state = State::lost;
+};
+
 /// What the desk sees.
 struct DeskView {
   ShowState show;
@@ -85,13 +92,17 @@ struct DeskView {
   std::vector<BusView> buses;
   const controller::CueSchedule* schedule = nullptr;  ///< what lamps show; not to be kept
   std::shared_ptr<const Plan> way{};                  ///< the reset move that was planned last; null: none was
+  // Filled in by the desk.
+  std::vector<GateView> gates{};
+  std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"
 };
 
 /// What the desk wants.
 struct DeskWishes {
   std::vector<controller::Command> commands{};
-  bool ends = false;    ///< the run
-  bool nobody = false;  ///< is left to want anything
+  controller::Bars bars = 0;  ///< what stands against walking, from now on
+  bool ends = false;          ///< the run
+  bool nobody = false;        ///< is left to want anything
 };
 
 struct LiveOptions {

@@ -53,6 +53,12 @@ bool is(std::string_view said, std::string_view verb) {
   return std::ranges::equal(said, verb, {}, [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
 }
 
+bool names_bars(controller::Outcome outcome) {
+  using controller::Outcome;
+  return outcome == Outcome::gate_open || outcome == Outcome::hold_pressed || outcome == Outcome::emergency_hold ||
+         outcome == Outcome::not_ready;
+}
+
 }  // namespace
 
 std::string json_of(const RunEvent& event) {
@@ -98,6 +104,7 @@ void RunDesk::say(std::string_view line, const Speaker& who) {
 
 void RunDesk::say(Command command, std::string order, const Speaker& who) {
   command.source = who.input;
+  command.input = number_of(who);
   command.said = ++last_;
   said_[last_] = {std::move(order), who};
   if (said_.size() > kMostUnanswered) said_.erase(said_.begin());
@@ -117,11 +124,38 @@ void RunDesk::tell(RunEvent event) {
   for (Surface* surface : surfaces_) surface->told(event);
 }
 
+/// For the GO guard: the first that speak get numbers of their own.
+std::uint8_t RunDesk::number_of(const Speaker& who) {
+  constexpr std::size_t kLast = controller::kMostGoInputs - 1;
+  const auto known = std::ranges::find(inputs_, who.name);
+  const auto number = static_cast<std::size_t>(known - inputs_.begin());
+  if (known == inputs_.end() && inputs_.size() < kLast) inputs_.push_back(who.name);
+  return static_cast<std::uint8_t>(std::min(number, kLast));
+}
+
+void RunDesk::tell_switched_off(std::uint64_t inputs) {
+  const std::uint64_t fresh = inputs & ~std::exchange(off_, inputs);
+  for (std::size_t i = 0; i < controller::kMostGoInputs; ++i) {
+    if (((fresh >> i) & 1U) == 0) continue;
+    tell(
+        {RunEvent::Kind::alarm, (i < inputs_.size() ? inputs_[i] : "an input") +
+                                    " has pressed GO for more than 5 s and is switched off until somebody says ok; the "
+                                    "others count"});
+  }
+}
+
 DeskWishes RunDesk::look(const DeskView& view) {
   now_ = view.show.at;
-  for (Surface* surface : surfaces_) surface->look(view, *this);
+  DeskView seen = view;
+  for (const Facts& facts : facts_) facts(seen);
+  against_ = seen.against;
+  tell_switched_off(view.show.inputs_off);
+  for (Surface* surface : surfaces_) surface->look(seen, *this);
   wishes_.nobody = std::ranges::none_of(surfaces_, &Surface::listens);
-  return std::exchange(wishes_, {});
+  const controller::Bars bars = wishes_.bars;
+  DeskWishes wishes = std::exchange(wishes_, {});
+  wishes_.bars = bars;
+  return wishes;
 }
 
 void RunDesk::answered(const Answer& answer) {
@@ -131,6 +165,9 @@ void RunDesk::answered(const Answer& answer) {
   event.order = std::move(said->second.order);
   event.who = std::move(said->second.who);
   event.refused = refused(answer.outcome);
+  if (names_bars(answer.outcome)) {
+    for (std::size_t i = 0; i < against_.size(); ++i) event.text += (i == 0 ? ": " : ", ") + against_[i];
+  }
   said_.erase(said);
   tell(std::move(event));
 }

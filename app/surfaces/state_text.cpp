@@ -29,6 +29,20 @@ std::string_view to_text(ResetState state) {
   return "";
 }
 
+std::string_view to_text(GateView::State state) {
+  switch (state) {
+    case GateView::State::closed:
+      return "closed";
+    case GateView::State::open:
+      return "open";
+    case GateView::State::lost:
+      return "lost";
+    case GateView::State::by_word:
+      return "by-word";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string_view StateText::to_text(Phase phase) {
@@ -111,9 +125,11 @@ std::string StateText::line(const DeskView& view) const {
     tempo +=
         fmt::format(", loop {:.4g}-{:.4g}", show_.tempo.count_at(state.loop.from), show_.tempo.count_at(state.loop.to));
   }
-  return fmt::format("{} {} count {:.0f} | {} | {} | {}", section_at(state.position),
+  std::string against;
+  for (const std::string& one : view.against) against += (against.empty() ? " | NO GO: " : ", ") + one;
+  return fmt::format("{} {} count {:.0f} | {} | {}{} | {}", section_at(state.position),
                      show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, what_happens(state),
-                     buses(view.buses));
+                     against, buses(view.buses));
 }
 
 std::string StateText::json(const DeskView& view) const {
@@ -135,6 +151,8 @@ std::string StateText::json(const DeskView& view) const {
   for (const BusView& bus : view.buses) {
     buses.push_back({{"name", bus.name}, {"nodes", bus.nodes}, {"unconfirmed", bus.unconfirmed}});
   }
+  Json gates = Json::array();
+  for (const GateView& gate : view.gates) gates.push_back({{"name", gate.name}, {"state", app::to_text(gate.state)}});
   Json loop = nullptr;
   if (state.loops) loop = {{"from_s", to_seconds(state.loop.from)}, {"to_s", to_seconds(state.loop.to)}};
   const Json document{{"phase", to_text(state.phase)},
@@ -153,6 +171,8 @@ std::string StateText::json(const DeskView& view) const {
                       {"loop", std::move(loop)},
                       {"reset", std::move(reset)},
                       {"switch", state.target.current},
+                      {"gates", std::move(gates)},
+                      {"against", view.against},
                       {"ready", view.roll_called},
                       {"buses", std::move(buses)}};
   return Json{{"state", document}}.dump();

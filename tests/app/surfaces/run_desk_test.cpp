@@ -94,6 +94,40 @@ TEST_F(RunDeskTest, VerbsAnswerAtOnceAndKeepWhatWasTyped) {
   EXPECT_THAT(desk_.help(), HasSubstr("jump cue 12"));
 }
 
+TEST_F(RunDeskTest, WhatStandsAgainstWalkingStaysUntilItIsTakenBack) {
+  desk_.bar(controller::kHoldPressed | 2, true);
+  EXPECT_EQ(desk_.look(DeskView{}).bars, controller::kHoldPressed | 2);
+  desk_.bar(2, false);
+  EXPECT_EQ(desk_.look(DeskView{}).bars, controller::kHoldPressed);
+  EXPECT_EQ(desk_.look(DeskView{}).bars, controller::kHoldPressed);
+}
+
+TEST_F(RunDeskTest, ARefusalNamesWhatStandsAgainstIt) {
+  desk_.add([](DeskView& view) { view.against = {"trap closed: open", "lift level: lost"}; });
+  ears_.says = {"go"};
+  const DeskWishes wishes = desk_.look({});
+  desk_.answered({wishes.commands.at(0), Outcome::gate_open, instant_at(3)});
+  EXPECT_THAT(heard(), ElementsAre(HasSubstr("a gate that it needs is open, or nobody knows: trap closed: open, lift "
+                                             "level: lost")));
+}
+
+TEST_F(RunDeskTest, EverySpeakerIsAnInputOfItsOwnForTheGoGuardAndOneThatIsSwitchedOffIsAnAlarm) {
+  ears_.says = {"go"};
+  other_.me.name = "button GO";
+  other_.says = {"go", "go"};
+  const DeskWishes wishes = desk_.look({});
+  ASSERT_EQ(wishes.commands.size(), 3U);
+  EXPECT_EQ(wishes.commands[0].input, 0);
+  EXPECT_EQ(wishes.commands[1].input, 1);
+  EXPECT_EQ(wishes.commands[2].input, 1);
+  DeskView view;
+  view.show.inputs_off = 2;
+  (void)desk_.look(view);
+  (void)desk_.look(view);
+  EXPECT_THAT(heard(), ElementsAre("{\"alarm\":\"button GO has pressed GO for more than 5 s and is switched off until "
+                                   "somebody says ok; the others count\"}"));
+}
+
 TEST_F(RunDeskTest, TheRunIsLeftByQuitAndWhenNobodyListens) {
   EXPECT_FALSE(desk_.look({}).nobody);
   ears_.awake = false;
