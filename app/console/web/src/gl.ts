@@ -54,7 +54,7 @@ export class Program {
 type Numbers = Int32Array | Uint32Array | Float32Array | Uint8Array;
 
 const kWidth = 2048; // texels; every WebGL 2 has as many
-const kBytesAFrame = 1 << 20; // of filling
+const kBytesAFrame = 4 << 20; // of filling
 
 /** A long array as a texture with rows of `kTexels`; it is filled a piece a frame, so that no frame takes long. */
 export class ArrayTexture {
@@ -111,4 +111,12 @@ export function buffer(gl: Gl, data: Numbers, meter: Meter, usage: number = gl.S
   gl.bufferData(gl.ARRAY_BUFFER, data, usage);
   meter.bytes += data.byteLength;
   return handle;
+}
+
+/** Whole numbers for each instance. @param each instances that share one */
+export function per_instance(gl: Gl, location: number, data: WebGLBuffer | null, numbers: number, type: number, each = 1): void {
+  gl.bindBuffer(gl.ARRAY_BUFFER, data);
+  gl.enableVertexAttribArray(location);
+  gl.vertexAttribIPointer(location, numbers, type, 0, 0);
+  gl.vertexAttribDivisor(location, each);
 }

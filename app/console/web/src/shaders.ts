@@ -56,6 +56,7 @@ void main() {
   at = corner;
   gl_Position = view * vec4(centre(gl_InstanceID) + corner * half_m, 0, 1);
   px = half_m * focal / gl_Position.w;
+  if (kind == 0u && px < 2.0) gl_Position = vec4(2, 2, 2, 1);   // its rim would not be seen
 }`;
 
 export const cells_fragment = `${kHead}
@@ -81,11 +82,17 @@ void main() {
   colour = mix(ground, vec4(line, 0.7), rim);
 }`;
 
-/** Lamps: what they were last confirmed to show. Bytes: look, 1 silent | 2 not confirmed. */
+/**
+ * Lamps: what they were last confirmed to show. A node has a layer of `shown` (the looks of one switch) and flags:
+ * 1 silent, 2 not right. 255: nothing confirmed yet.
+ */
 export const lamps_vertex = `${kHead}${kPlaces}${kView}
-in uint cell;
-in uvec2 shown;
+precision highp usampler2DArray;
+in uvec2 lamp;           // cell, channel: 32 of each node
+uniform usampler2D nodes;
+uniform usampler2DArray shown;
 uniform sampler2D looks; // 256: colour with brightness, effect in alpha
+uniform int planned;     // a layer: what the plan says; -1: what is confirmed
 uniform float half_m;
 uniform float least_px;
 uniform float seconds;
@@ -95,15 +102,19 @@ flat out uint state;
 out float px;
 void main() {
   vec2 corner = corners[gl_VertexID];
-  vec4 look = texelFetch(looks, ivec2(int(shown.x), 0), 0);
+  uvec2 node = texelFetch(nodes, texel(int(lamp.y / 32u)), 0).xy;
+  int layer = int(node.x);
+  state = node.y;
+  if (planned >= 0) { layer = planned; state = 0u; }
+  uint index = layer == 255 ? 0u : texelFetch(shown, ivec3(texel(int(lamp.y)), layer), 0).x;
+  vec4 look = texelFetch(looks, ivec2(int(index), 0), 0);
   int effect = int(look.a * 255.0 + 0.5);
-  float on = 1.0;        // never faster than the lamps themselves: docs/wire-protocol.md
-  if (effect == 1) on = step(fract(seconds), 0.5);
+  float on = 1.0;        // as lamps do: docs/wire-protocol.md
+  if (effect == 1 || effect == 4) on = step(fract(seconds), 0.5);
   else if (effect == 2) on = 0.6 + 0.4 * sin(3.14159265 * seconds);
   else if (effect == 3) { float f = fract(seconds / 1.2) * 1.2; on = max(step(f, 0.2), step(0.4, f) * step(f, 0.6)); }
   light = look.rgb * mix(0.25, 1.0, on);
-  state = shown.y;
-  vec4 p = view * vec4(centre(int(cell)), 0, 1);
+  vec4 p = view * vec4(centre(int(lamp.x)), 0, 1);
   px = max(half_m * focal / p.w, least_px);
   bool dark = look.r + look.g + look.b == 0.0 && state == 0u;
   at = corner;
@@ -120,7 +131,7 @@ out vec4 colour;
 void main() {
   float edge = max(abs(at.x), abs(at.y));
   // A square frame: people are round.
-  vec4 lamp = edge > 0.55 ? vec4(light, 1) : vec4(light, 0.3);
+  vec4 lamp = edge > 0.74 ? vec4(light, 0.95) : vec4(light, 0.22);
   if (state != 0u) {     // a cross over what it was last known to show; thicker for a silent one
     float width = (state & 1u) != 0u ? 0.24 : 0.13;
     float cross_m = min(abs(at.x - at.y), abs(at.x + at.y));
@@ -203,7 +214,7 @@ void main() {
     c = vec3(0.85);
   }
   if (chosen && r > 0.72) c = selected;
-  else if (r > 1.0 - 1.5 / px) c = edge_colour;
+  else if (px > 3.0 && r > 1.0 - 1.5 / px) c = edge_colour;
   colour = vec4(c, 1);
 }`;
 

@@ -4,8 +4,7 @@
 /** Marks of all performers, one after the other: performer p owns marks starts[p] up to starts[p + 1]. */
 export interface Tracks {
   starts: Uint32Array; // one more than performers
-  times_ms: Int32Array; // strictly ascending for each performer
-  cells: Uint32Array;
+  marks: Int32Array; // time in ms, cell; times ascend for each performer
 }
 
 export interface Point {
@@ -19,7 +18,7 @@ export function mark_before(tracks: Tracks, performer: number, time_ms: number):
   let high = tracks.starts[performer + 1];
   while (high - low > 1) {
     const middle = (low + high) >>> 1;
-    if (tracks.times_ms[middle] <= time_ms) low = middle;
+    if (tracks.marks[2 * middle] <= time_ms) low = middle;
     else high = middle;
   }
   return low;
@@ -27,21 +26,23 @@ export function mark_before(tracks: Tracks, performer: number, time_ms: number):
 
 /** Straight and of constant speed between marks. @param centres x, y of every cell, m */
 export function position_at(tracks: Tracks, centres: Float32Array, performer: number, time_ms: number): Point {
+  const { starts, marks } = tracks;
   const mark = mark_before(tracks, performer, time_ms);
-  const a = tracks.cells[mark];
-  const from = { x: centres[2 * a], y: centres[2 * a + 1] };
-  if (mark + 1 >= tracks.starts[performer + 1] || time_ms <= tracks.times_ms[mark]) return from;
-  const share = (time_ms - tracks.times_ms[mark]) / (tracks.times_ms[mark + 1] - tracks.times_ms[mark]);
-  const b = tracks.cells[mark + 1];
-  return { x: from.x + share * (centres[2 * b] - from.x), y: from.y + share * (centres[2 * b + 1] - from.y) };
+  const begins_ms = marks[2 * mark];
+  const a = 2 * marks[2 * mark + 1];
+  const from = { x: centres[a], y: centres[a + 1] };
+  if (mark + 1 >= starts[performer + 1] || time_ms <= begins_ms) return from;
+  const share = (time_ms - begins_ms) / (marks[2 * mark + 2] - begins_ms);
+  const b = 2 * marks[2 * mark + 3];
+  return { x: from.x + share * (centres[b] - from.x), y: from.y + share * (centres[b + 1] - from.y) };
 }
 
 /** The next instant at which somebody who walks now, or walks next, stands elsewhere; undefined at the end. */
 export function next_place(tracks: Tracks, performer: number, time_ms: number): { time_ms: number; cell: number } | undefined {
   const mark = mark_before(tracks, performer, time_ms);
   for (let next = mark + 1; next < tracks.starts[performer + 1]; ++next) {
-    if (tracks.times_ms[next] > time_ms && tracks.cells[next] !== tracks.cells[mark]) {
-      return { time_ms: tracks.times_ms[next], cell: tracks.cells[next] };
+    if (tracks.marks[2 * next] > time_ms && tracks.marks[2 * next + 1] !== tracks.marks[2 * mark + 1]) {
+      return { time_ms: tracks.marks[2 * next], cell: tracks.marks[2 * next + 1] };
     }
   }
   return undefined;

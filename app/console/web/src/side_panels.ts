@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Beside the stage: health of buses and nodes, who is connected, the log; above it: alarms and readiness.
+
+import { by_id, make, set_facts, set_flag, set_text, show_if } from "./dom";
+import type { Model } from "./model";
+import { kNothing, kQuarantined, kRight, kSilent, kUnverified, type RunEvent } from "./protocol";
+import { is_word, say } from "./words";
+
+const kMostListed = 200;
+const kMostLogged = 500;
+/** What has a place of its own on the page; anything else that a state tells is listed by its name. */
+const kKnownFacts = new Set(["phase", "position_s", "rate", "section", "measure", "count", "cue", "standby", "goes_in_s", "ends_in_s", "tempo_percent",
+  "most_percent", "holds_at_end", "loop", "reset", "switch", "ready", "buses", "readiness", "time", "scope", "next_switch", "reset_s"]);
+
+/** A fact of a state that this page has no place for, in words. Pure. */
+export function fact_text(value: unknown): string {
+  if (value === null || value === undefined) return "–";
+  if (Array.isArray(value)) return value.map(fact_text).join(", ");
+  if (typeof value === "object") return Object.entries(value).map(([name, one]) => `${name.replace(/_/g, " ")} ${fact_text(one)}`).join(", ");
+  return String(value);
+}
+
+function time_of(unix_ms: number): string {
+  return new Date(unix_ms).toLocaleTimeString("en-GB");
+}
+
+export class SidePanels {
+  private logged_ = 0;
+
+  constructor(private readonly model_: Model, private readonly acknowledge_: (n: number) => void) {
+    const tabs = ["health", "find", "log"];
+    for (const name of tabs) by_id(`tab_${name}`).addEventListener("click", () => this.open(name));
+  }
+
+  open(name: string): void {
+    for (const one of ["health", "find", "log"]) {
+      show_if(by_id(one), one === name);
+      by_id(`tab_${one}`).setAttribute("aria-selected", String(one === name));
+    }
+  }
+
+  draw_alarms(): void {
+    const open = this.model_.alarms.filter((alarm) => alarm.acknowledged_by === null);
+    by_id("alarms").replaceChildren(...open.slice(-4).map((alarm) => {
+      const row = make("div");
+      const seen = make("button", say("seen"));
+      seen.addEventListener("click", () => this.acknowledge_(alarm.n));
+      row.append(make("b", `⚠ ${time_of(alarm.unix_ms)}`), make("span", alarm.text), seen);
+      return row;
+    }));
+    if (open.length > 4) by_id("alarms").append(make("div", say("and_more", { n: open.length - 4 })));
+  }
+
+  draw_stages(): void {
+    const told = this.model_.state?.readiness;
+    const stages = Array.isArray(told) ? (told as { stage?: string; name?: string; state?: string; text?: string }[]) : [];
+    const part = by_id("stages");
+    show_if(part, stages.length > 0);
+    const now = JSON.stringify(stages);
+    if (part.dataset.now === now) return;
+    part.dataset.now = now;
+    const signs: Record<string, string> = { success: "✓", error: "✗", warning: "!", waiting: "…", next: "›", skipped: "–", off: "·" };
+    part.replaceChildren(...stages.map((stage) => {
+      const state = String(stage.state ?? "").toLowerCase();
+      const one = make("span", `${signs[state] ?? "?"} ${stage.stage ?? stage.name ?? ""}: ${String(stage.state ?? "")}${stage.text ? ` (${stage.text})` : ""}`);
+      if (/^[a-z]+$/.test(state)) one.className = state;
+      one.setAttribute("role", "listitem");
+      return one;
+    }));
+  }
+
+  draw_health(): void {
+    const { show, state } = this.model_;
+    if (!show || !state) return;
+    const figures = this.model_.nodes.figures();
+    const bad = figures.wrong + figures.silent + figures.quarantined;
+    const words = by_id("floor_words");
+    words.classList.toggle("wrong", bad > 0);
+    set_text(words, this.floor_words(bad, figures.unverified));
+    this.draw_buses();
+    this.draw_wrong_nodes();
+    const rest = Object.entries(state).filter(([name]) => !kKnownFacts.has(name));
+    show_if(by_id("more_title"), rest.length > 0);
+    set_facts(by_id("more"), rest.map(([name, value]) => [is_word(name) ? say(name) : name.replace(/_/g, " "), fact_text(value)]));
+    const scope = state.scope;
+    show_if(by_id("scope"), scope !== undefined);
+    if (scope !== undefined) set_text(by_id("scope"), say("scope", { scope: fact_text(scope) }));
+  }
+
+  /** "12 of 3,290 markers not right: n1 (left 3), ..." */
+  private floor_words(bad: number, unverified: number): string {
+    const { show, nodes } = this.model_;
+    if (!show || show.rig.length === 0) return say("no_rig");
+    if (bad === 0) return unverified > 0 ? say("unverified", { n: unverified }) : say("all_right", { n: nodes.many });
+    let markers = 0;
+    const names: string[] = [];
+    nodes.flags.forEach((flags, node) => {
+      if ((flags & (kSilent | kQuarantined)) === 0 && (flags & (kRight | kUnverified)) !== 0) return;
+      markers += show.rig[node].channels.filter((channel) => channel !== null).length;
+      if (names.length < 5) names.push(show.rig[node].name);
+    });
+    const list = names.join(", ") + (bad > names.length ? ` ${say("and_more", { n: bad - names.length })}` : "");
+    return say("some_wrong", { n: markers.toLocaleString("en"), all: show.markers.toLocaleString("en"), list });
+  }
+
+  private draw_buses(): void {
+    const { state, health } = this.model_;
+    const rows: string[][] = (state?.buses ?? []).map((bus) => {
+      const more = health.find((one) => one.name === bus.name);
+      return [bus.name, `${bus.nodes - bus.unconfirmed}/${bus.nodes}`, more ? `${more.worst_lateness_ms.toFixed(1)} ms` : "", more ? String(more.retries) : "", more?.trouble ?? ""];
+    });
+    const body = by_id("buses");
+    const now = JSON.stringify(rows);
+    if (body.dataset.now === now) return;
+    body.dataset.now = now;
+    body.replaceChildren(...rows.flatMap(([name, right, late, retries, trouble]) => {
+      const row = make("tr");
+      const [a, b] = right.split("/");
+      if (a !== b || trouble) row.className = "wrong";
+      row.append(make("td", (row.className ? "☒ " : "") + name), make("td", right), make("td", late), make("td", retries));
+      if (!trouble) return [row];
+      const more = make("tr", "", "wrong");
+      const cell = make("td", trouble, "trouble");
+      cell.colSpan = 4;
+      more.append(cell);
+      return [row, more];
+    }));
+  }
+
+  private draw_wrong_nodes(): void {
+    const { show, nodes } = this.model_;
+    if (!show) return;
+    const lines: string[] = [];
+    nodes.flags.forEach((flags, node) => {
+      const bad = (flags & (kSilent | kQuarantined)) !== 0 || (flags & (kRight | kUnverified)) === 0;
+      if (!bad) return;
+      const one = show.rig[node];
+      const how = say(flags & kQuarantined ? "node_quarantined" : flags & kSilent ? "node_silent" : "node_wrong");
+      const last = nodes.index[node] === kNothing ? "–" : nodes.index[node];
+      lines.push(`${one.name} · ${show.buses[one.bus]?.name ?? "?"} ${one.address} · ${how} · ${last} · ${say("node_markers", { n: one.channels.filter((c) => c !== null).length })}`);
+    });
+    const list = by_id("wrong_nodes");
+    const now = lines.join("\n");
+    if (list.dataset.now === now) return;
+    list.dataset.now = now;
+    list.replaceChildren(...lines.slice(0, kMostListed).map((line) => make("li", line)));
+    if (lines.length > kMostListed) list.append(make("li", say("and_more", { n: lines.length - kMostListed })));
+  }
+
+  draw_people(): void {
+    const { people, holder, me, role } = this.model_;
+    by_id("connected").replaceChildren(...people.map((one) => make("li", `${one.name}${one.id === me ? " ←" : ""} · ${one.role}${one.id === holder?.id ? " ★" : ""}`)));
+    const seat = by_id("seat");
+    seat.classList.toggle("mine", this.model_.leads());
+    set_text(seat, role === "view" ? say("view_only") : this.model_.leads() ? say("seat_mine") : holder ? say("seat_other", { name: holder.name }) : say("seat_empty"));
+    const take = by_id("take_seat");
+    show_if(take, role !== "view");
+    set_text(take, say(this.model_.leads() ? "leave_seat" : "take_seat"));
+    show_if(by_id("pairing"), role === "admin");
+  }
+
+  /** Newest first. */
+  log(event: RunEvent): void {
+    const text = event.answer ? `${event.answer.order || "go"} (${event.answer.who}): ${event.answer.text}` : event.alarm ?? event.reset ?? event.note ?? event.moment ?? "";
+    if (!text) return;
+    const row = make("li", "", event.alarm ? "alarm" : event.answer?.refused ? "refused" : "");
+    row.append(make("time", time_of(event.unix_ms)), make("span", (event.alarm ? "⚠ " : event.answer?.refused ? "✗ " : "") + text));
+    const list = by_id("log");
+    list.prepend(row);
+    if (++this.logged_ > kMostLogged) list.lastElementChild?.remove();
+  }
+
+  draw_link(round_trip_ms: number | undefined, connected: boolean): void {
+    set_text(by_id("link"), !connected ? say("connecting") : round_trip_ms === undefined ? "" : say("link", { ms: Math.round(round_trip_ms) }));
+    set_flag(document.body, "data-connected", String(connected));
+  }
+}

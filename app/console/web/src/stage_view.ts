@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stage as it is seen and touched: camera, pointers, letters along the edges, who was picked.
+
+import { type Box, Camera } from "./camera";
+import { column_letters } from "./cell_name";
+import { by_id, set_text, show_if } from "./dom";
+import type { Model } from "./model";
+import { type Palette, Scene } from "./scene";
+import { nearest, type Point } from "./tracks";
+import { say } from "./words";
+
+export interface Choices {
+  people: boolean;
+  lamps: boolean;
+  ghosts: boolean;
+  ways: boolean;
+}
+
+const kWaysAhead_ms = 8000;
+const kPick_px = 18;
+
+/** Around all cells, with room for letters. */
+export function box_of(centres: Float32Array, pitch_m: number): Box {
+  const box = { low: { x: Infinity, y: Infinity }, high: { x: -Infinity, y: -Infinity } };
+  for (let i = 0; i < centres.length; i += 2) {
+    box.low.x = Math.min(box.low.x, centres[i]);
+    box.low.y = Math.min(box.low.y, centres[i + 1]);
+    box.high.x = Math.max(box.high.x, centres[i]);
+    box.high.y = Math.max(box.high.y, centres[i + 1]);
+  }
+  const margin = 0.6 * pitch_m + 0.045 * Math.max(box.high.x - box.low.x, box.high.y - box.low.y);
+  return { low: { x: box.low.x - margin, y: box.low.y - 1.4 * margin }, high: { x: box.high.x + margin, y: box.high.y + 1.4 * margin } };
+}
+
+function palette(): Palette {
+  const style = getComputedStyle(document.documentElement);
+  const of = (name: string) => {
+    const value = parseInt(style.getPropertyValue(name).trim().replace(/^#(.)(.)(.)$/, "#$1$1$2$2$3$3").slice(1), 16);
+    return [value >> 16, (value >> 8) & 255, value & 255].map((part) => part / 255);
+  };
+  const line = of("--line");
+  const ground = of("--ground");
+  return {
+    ground,
+    line: line.map((part, i) => 0.55 * part + 0.45 * ground[i]),
+    wing: line.map((part, i) => 0.35 * part + 0.65 * ground[i]),
+    blocked: of("--faint"),
+    edge: ground,
+    selected: of("--ink"),
+    wrong: of("--wrong"),
+    ink: of("--ink"),
+  };
+}
+
+export class StageView {
+  readonly camera = new Camera();
+  readonly scene: Scene;
+  readonly choices: Choices = { people: true, lamps: true, ghosts: true, ways: true };
+  private readonly floor_ = by_id<HTMLCanvasElement>("floor");
+  private readonly labels_ = by_id<HTMLCanvasElement>("labels");
+  private readonly pointers_ = new Map<number, { x: number; y: number }>();
+  private moved_ = false;
+  private labels_drawn_ = "";
+  private drawn_ = "";
+  /** Frames and what they cost, for whoever measures. */
+  readonly cost = { frames: 0, draws: 0, bytes: 0, worst_draws: 0, worst_bytes: 0 };
+
+  constructor(private readonly model_: Model, private readonly picked_: (performer: number) => void) {
+    this.scene = new Scene(this.floor_, palette());
+    new ResizeObserver(() => this.resize()).observe(this.floor_);
+    this.floor_.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.camera.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
+    }, { passive: false });
+    this.floor_.addEventListener("pointerdown", (event) => this.down(event));
+    this.floor_.addEventListener("pointermove", (event) => this.move(event));
+    for (const kind of ["pointerup", "pointercancel"] as const) this.floor_.addEventListener(kind, (event) => this.up(event));
+    by_id("closer").addEventListener("click", () => this.zoom(1.5));
+    by_id("farther").addEventListener("click", () => this.zoom(1 / 1.5));
+    by_id("all").addEventListener("click", () => this.whole());
+    by_id("front").addEventListener("click", () => this.turn());
+    for (const name of ["people", "lamps", "ghosts", "ways"] as const) by_id(name).addEventListener("click", () => this.choose(name));
+  }
+
+  take_show(): void {
+    const { show, centres } = this.model_;
+    if (show) this.camera.fit(box_of(centres, show.stage.pitch_m));
+    this.redraw();
+  }
+
+  redraw(): void {
+    this.labels_drawn_ = this.drawn_ = "";
+  }
+
+  take_theme(): void {
+    this.scene.palette = palette();
+    this.redraw();
+  }
+
+  turn(): void {
+    this.camera.front = !this.camera.front;
+    this.camera.reset();
+    by_id("front").setAttribute("aria-pressed", String(this.camera.front));
+  }
+
+  whole(): void {
+    this.camera.reset();
+  }
+
+  choose(name: keyof Choices): void {
+    this.choices[name] = !this.choices[name];
+    by_id(name).setAttribute("aria-pressed", String(this.choices[name]));
+  }
+
+  zoom(factor: number): void {
+    this.camera.zoom(factor, this.camera.size.width / 2, this.camera.size.height / 2);
+  }
+
+  /** Looks at a place from near. */
+  go_to(at: Point): void {
+    const { width, height } = this.camera.size;
+    const now = this.camera.project(at);
+    this.camera.pan(now.x, now.y, width / 2, height / 2);
+  }
+
+  private resize(): void {
+    this.camera.size = { width: Math.max(1, this.floor_.clientWidth), height: Math.max(1, this.floor_.clientHeight) };
+    for (const canvas of [this.floor_, this.labels_]) {
+      canvas.width = Math.round(this.camera.size.width * devicePixelRatio);
+      canvas.height = Math.round(this.camera.size.height * devicePixelRatio);
+    }
+    this.redraw();
+  }
+
+  private down(event: PointerEvent): void {
+    this.floor_.setPointerCapture(event.pointerId);
+    this.pointers_.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
+    this.moved_ = this.pointers_.size > 1;
+  }
+
+  private move(event: PointerEvent): void {
+    const before = this.pointers_.get(event.pointerId);
+    if (!before) return;
+    const now = { x: event.offsetX, y: event.offsetY };
+    const distance = Math.hypot(now.x - before.x, now.y - before.y);
+    if (!this.moved_ && distance < 4) return;
+    this.moved_ = true;
+    const other = [...this.pointers_.entries()].find(([id]) => id !== event.pointerId)?.[1];
+    if (other) {
+      // Two fingers: what is between them stays between them.
+      const apart = (a: Point, b: Point) => Math.hypot(a.x - b.x, a.y - b.y);
+      const middle = { x: (now.x + other.x) / 2, y: (now.y + other.y) / 2 };
+      this.camera.pan((before.x + other.x) / 2, (before.y + other.y) / 2, middle.x, middle.y);
+      this.camera.zoom(apart(now, other) / Math.max(1, apart(before, other)), middle.x, middle.y);
+    } else {
+      this.camera.pan(before.x, before.y, now.x, now.y);
+    }
+    this.pointers_.set(event.pointerId, now);
+  }
+
+  private up(event: PointerEvent): void {
+    const known = this.pointers_.delete(event.pointerId);
+    if (known && !this.moved_ && event.type === "pointerup") this.pick(event.offsetX, event.offsetY);
+  }
+
+  private pick(x: number, y: number): void {
+    const { tracks, centres, show } = this.model_;
+    if (!tracks || !show) return;
+    const at = this.camera.unproject(x, y);
+    const scale = this.camera.project(at).scale;
+    const reach_m = Math.max(0.6 * show.stage.pitch_m, kPick_px / scale);
+    this.picked_(nearest(tracks, centres, this.shown_ms(performance.now()), at, reach_m));
+  }
+
+  private shown_ms(now_ms: number): number {
+    return Math.round(this.model_.shown_s(now_ms) * 1000);
+  }
+
+  /** @param planned layer of the looks of the instant that is looked at; -1: now */
+  draw(now_ms: number, planned: number): void {
+    const { model_: model, camera } = this;
+    const view = camera.view();
+    const shown_s = model.shown_s(now_ms);
+    const resets = model.scrub_s === undefined && model.way !== undefined && (model.state?.phase === "resets" || model.state?.phase === "reset-held");
+    const time_ms = resets ? Math.round(model.way_clock.at(now_ms) * 1000) : this.shown_ms(now_ms);
+    const next_s = model.next_formation_s(resets ? Number(model.state?.reset.to_s ?? shown_s) : shown_s);
+    // What blinks needs frames; what stands still does not.
+    const blink = this.choices.lamps ? Math.floor(now_ms / 100) : 0;
+    const drawn = [time_ms, next_s, blink, planned, model.selected, resets, view.matrix.join(), Object.values(this.choices).join()].join("|");
+    if (drawn !== this.drawn_ && !this.scene.busy()) {
+      const whole = this.scene.draw({
+        view,
+        size_px: { width: this.floor_.width, height: this.floor_.height },
+        ratio: devicePixelRatio,
+        time_ms,
+        ghosts_ms: this.choices.ghosts && next_s !== undefined ? Math.round(next_s * 1000) : undefined,
+        ways_ms: this.choices.ways ? kWaysAhead_ms : undefined,
+        people: this.choices.people,
+        lamps: this.choices.lamps,
+        planned,
+        selected: model.selected,
+        seconds: (now_ms / 1000) % 3600,
+        uses_way: resets,
+      });
+      this.drawn_ = whole ? drawn : "";
+      this.count_cost();
+    }
+    this.draw_labels();
+    set_text(by_id("legend"), say(planned >= 0 ? "legend_planned" : "legend"));
+    show_if(by_id("legend"), model.show !== undefined);
+  }
+
+  private count_cost(): void {
+    const { draws, bytes } = this.scene.meter.take();
+    this.cost.frames += 1;
+    this.cost.draws += draws;
+    this.cost.bytes += bytes;
+    this.cost.worst_draws = Math.max(this.cost.worst_draws, draws);
+    this.cost.worst_bytes = Math.max(this.cost.worst_bytes, bytes);
+  }
+
+  private draw_labels(): void {
+    const { show, centres } = this.model_;
+    const { camera } = this;
+    if (!show || centres.length === 0) return;
+    const drawn = [camera.view().matrix.join(), camera.size.width, camera.size.height, document.documentElement.dataset.theme, document.documentElement.lang].join("|");
+    if (drawn === this.labels_drawn_) return;
+    this.labels_drawn_ = drawn;
+    const context = this.labels_.getContext("2d");
+    if (!context) return;
+    const ratio = devicePixelRatio;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, camera.size.width, camera.size.height);
+    context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--ink");
+    context.font = "12px sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    this.letter_columns(context);
+    this.letter_rows(context);
+    if (camera.front) return;
+    const { columns, rows, pitch_m } = show.stage;
+    const first = { x: centres[0], y: centres[1] };
+    const last = { x: centres[2 * (columns - 1)], y: centres[2 * (columns * rows - 1) + 1] };
+    const write = (text: string, at: Point, dx: number, dy: number, turn = 0) => {
+      const p = camera.project(at);
+      context.save();
+      context.translate(p.x + dx, p.y + dy);
+      context.rotate(turn);
+      context.fillText(text, 0, 0);
+      context.restore();
+    };
+    context.font = "bold 14px sans-serif";
+    write(say("audience"), { x: (first.x + last.x) / 2, y: first.y - 0.5 * pitch_m }, 0, 34);
+    context.font = "13px sans-serif";
+    write(say("stage_right"), { x: first.x - 0.5 * pitch_m, y: (first.y + last.y) / 2 }, -38, 0, -Math.PI / 2);
+    write(say("stage_left"), { x: last.x + 0.5 * pitch_m, y: (first.y + last.y) / 2 }, 38, 0, Math.PI / 2);
+  }
+
+  /** Letters where they stay in sight, as many as there is room for. */
+  private letter_columns(context: CanvasRenderingContext2D): void {
+    const { show, centres } = this.model_;
+    if (!show) return;
+    const { columns, rows, pitch_m } = show.stage;
+    const step = this.step(columns, (i) => centres[2 * i], true);
+    for (let column = 0; column < columns; column += step) {
+      for (const [row, side] of [[0, 1], [rows - 1, -1]]) {
+        if (this.camera.front && side < 0) continue;
+        const cell = row * columns + column;
+        const p = this.camera.project({ x: centres[2 * column], y: centres[2 * cell + 1] - side * 0.5 * pitch_m });
+        context.fillText(column_letters(column), p.x, Math.min(this.camera.size.height - 10, Math.max(10, p.y + side * 13)));
+      }
+    }
+  }
+
+  private letter_rows(context: CanvasRenderingContext2D): void {
+    const { show, centres } = this.model_;
+    if (!show) return;
+    const { columns, rows, pitch_m } = show.stage;
+    const step = this.step(rows, (i) => centres[2 * i * columns + 1], false);
+    for (let row = 0; row < rows; row += step) {
+      for (const [column, side] of [[0, -1], [columns - 1, 1]]) {
+        const cell = row * columns + column;
+        const p = this.camera.project({ x: centres[2 * cell] + side * 0.5 * pitch_m, y: centres[2 * cell + 1] });
+        context.fillText(String(row + 1), Math.min(this.camera.size.width - 14, Math.max(14, p.x + side * 16)), p.y);
+      }
+    }
+  }
+
+  /** So many apart that names do not touch. */
+  private step(many: number, place: (i: number) => number, across: boolean): number {
+    if (many < 2) return 1;
+    const a = this.camera.project(across ? { x: place(0), y: 0 } : { x: 0, y: place(0) });
+    const b = this.camera.project(across ? { x: place(many - 1), y: 0 } : { x: 0, y: place(many - 1) });
+    const apart = Math.hypot(b.x - a.x, b.y - a.y) / (many - 1);
+    return [1, 2, 5, 10, 20, 50, 100].find((step) => step * apart >= (across ? 24 : 16)) ?? 200;
+  }
+}
