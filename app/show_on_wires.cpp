@@ -2,9 +2,11 @@
 #include "app/show_on_wires.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "controller/bus_budget.hpp"
+#include "controller/look_table.hpp"
 #include "drivers/registry.hpp"
 
 namespace footlight::app {
@@ -18,13 +20,13 @@ Duration roll_call(const Rig& rig) {
 }
 
 /// How long before the first switch of each cue the slowest bus has to know of it.
-std::vector<Duration> notices_of(const ShowOnWires& show) {
+std::vector<Duration> notices_of(const ShowOnWires& show, const ShowOnWires& wires) {
   std::vector<Duration> notices(show.plays.size());
   const auto& switches = show.schedule->switches();
   for (std::size_t k = 1; k < switches.size(); ++k) {
     if (!switches[k].cue || switches[k].cue == switches[k - 1].cue) continue;
     Duration& notice = notices[*switches[k].cue];
-    for (const auto& loop : show.loops) notice = std::max(notice, loop->notice(k));
+    for (const auto& loop : wires.loops) notice = std::max(notice, loop->notice(*show.schedule, k));
   }
   return notices;
 }
@@ -56,8 +58,36 @@ Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& 
     out->loops.push_back(std::make_unique<controller::BusLoop>(
         *out->schedule, drivers::node_addresses(rig, BusIndex::of(b)), *out->drivers[b], switch_on));
   }
-  out->engine.emplace(*out->schedule, out->plays, notices_of(*out));
+  out->engine.emplace(*out->schedule, out->plays, notices_of(*out, *out));
   return out;
+}
+
+Result<std::unique_ptr<ShowOnWires>> put_beside(const Show& show, const Plan& plan, const Rig& rig,
+                                                const ShowOnWires& wires, const controller::CueSchedule& before) {
+  if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
+  auto out = std::make_unique<ShowOnWires>();
+  out->plays = controller::cue_plays(show, plan);
+  auto schedule = controller::build_schedule(show, plan, rig, wires.drivers);
+  if (!schedule) return std::move(schedule).error();
+  int most = std::numeric_limits<int>::max();
+  for (const auto& driver : wires.drivers) most = std::min(most, driver->capabilities().looks);
+  schedule = controller::numbered_after(std::move(schedule).value(), before, most);
+  if (!schedule) return std::move(schedule).error();
+  out->schedule = std::move(schedule).value();
+  out->engine.emplace(*out->schedule, out->plays, notices_of(*out, wires));
+  return out;
+}
+
+std::vector<controller::TempoLimit> limit_tempo(const Show& content, const Plan& plan, const Rig& rig,
+                                                ShowOnWires& show, const ShowOnWires& wires) {
+  std::vector<Duration> gaps;
+  for (const controller::CuePlay& play : show.plays) gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
+  auto limits = controller::tempo_limits(plan, content.tempo, show.plays, *show.schedule,
+                                         controller::bus_needs(*show.schedule, rig, wires.drivers, gaps), rig);
+  std::vector<int> percent;
+  for (const controller::TempoLimit& limit : limits) percent.push_back(limit.percent);
+  show.engine->set_limits(std::move(percent));
+  return limits;
 }
 
 bool GoWhenWaiting::due(const controller::CueEngine& engine, Instant now) noexcept {

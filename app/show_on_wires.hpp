@@ -9,6 +9,7 @@
 #include "controller/cue_engine.hpp"
 #include "controller/cue_list.hpp"
 #include "controller/cue_schedule.hpp"
+#include "controller/tempo_limit.hpp"
 #include "core/plan.hpp"
 #include "core/result.hpp"
 #include "core/rig.hpp"
@@ -35,6 +36,18 @@ struct ShowOnWires {
 /// Errors: a plan that is not valid and whatever build_schedule refuses.
 [[nodiscard]] Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& plan, const Rig& rig,
                                                                 std::vector<std::unique_ptr<drivers::Driver>> drivers);
+
+/// Lets no cue run faster than its walks are proved for and its buses can follow. @param wires drivers of `show`
+std::vector<controller::TempoLimit> limit_tempo(const Show& content, const Plan& plan, const Rig& rig,
+                                                ShowOnWires& show, const ShowOnWires& wires);
+
+/// Another plan for the wires of a show that plays: plays, schedule and engine, and neither drivers nor loops. Its
+/// looks are numbered for markers that show those of `before`.
+/// @param wires drivers and loops of the show that plays: asked for budgets, beside their threads
+/// Errors: as put_on_wires, and more looks than the markers hold. Any thread.
+[[nodiscard]] Result<std::unique_ptr<ShowOnWires>> put_beside(const Show& show, const Plan& plan, const Rig& rig,
+                                                              const ShowOnWires& wires,
+                                                              const controller::CueSchedule& before);
 
 /// Presses GO whenever the show waits: at first when it is told, then after the shortest stand.
 class GoWhenWaiting {

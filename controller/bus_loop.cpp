@@ -31,7 +31,7 @@ constexpr std::uint8_t kStateHold = 2;
 
 BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver,
                  const std::vector<SwitchOn>& switch_on)
-    : schedule_(schedule), driver_(driver), can_(driver.capabilities()) {
+    : schedule_(&schedule), driver_(driver), can_(driver.capabilities()) {
   latch_time_ = driver.latch_time();
   status_time_ = driver.status_time();
   heartbeat_time_ = driver.heartbeat_time();
@@ -56,12 +56,28 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
   }
   content_time_ = driver.content_time();
   sync_time_time_ = driver.sync_time_time();
+  worn_ = worn_in(schedule);
+}
+
+std::vector<BusLoop::WornState> BusLoop::worn_in(const CueSchedule& schedule) const {
+  std::vector<WornState> out;
   const auto& worn = schedule.contents().worn;
   for (std::size_t w = 0; w < worn.size() && can_.contents; ++w) {
     const std::size_t node = worn[w].node.at();
     if (node >= by_node_.size() || by_node_[node] < 0) continue;
-    worn_.push_back({w, static_cast<std::size_t>(by_node_[node]), worn[w].channel});
+    out.push_back({w, static_cast<std::size_t>(by_node_[node]), worn[w].channel});
   }
+  return out;
+}
+
+std::unique_ptr<BusLoop::Part> BusLoop::part_of(const CueSchedule& schedule, const CueSchedule& before) const {
+  auto part = std::make_unique<Part>();
+  part->schedule = &schedule;
+  part->worn = worn_in(schedule);
+  for (std::size_t i = 1; i < schedule.looks().size(); ++i) {
+    part->fresh[i] = i >= before.looks().size() || schedule.looks()[i] != before.looks()[i];
+  }
+  return part;
 }
 
 Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
@@ -70,6 +86,13 @@ Instant BusLoop::step(Instant now, const BusTarget& target) noexcept {
   show_time_ = target.show_time;
   rate_ = target.rate;
   refused_ = false;
+  if (taking_ != nullptr) {
+    // What is under way belongs to the schedule before.
+    const Instant again = driver_.ready() ? now : driver_.step(now, *this);
+    if (!driver_.ready()) return again;
+    note_end();
+    go_over(target.current);
+  }
   follow(target);
   follow_time();
   Instant driver_wish = driver_.step(now, *this);
@@ -187,6 +210,33 @@ void BusLoop::seek(std::size_t k) noexcept {
     node.offered = kNone;
     node.offers = 0;
   }
+}
+
+void BusLoop::go_over(std::size_t k) noexcept {
+  const CueSchedule& before = *schedule_;
+  schedule_ = taking_->schedule;
+  worn_.swap(taking_->worn);
+  sent_content_ = kNone;
+  for (std::size_t i = 0; i < taking_->fresh.size(); ++i) {
+    if (!taking_->fresh[i]) continue;
+    uploads_[i] = std::uint8_t{kUploads};
+    urgent_[i] = true;
+  }
+  driver_.take_plan(schedule_->plan_byte());
+  const std::size_t old = current_;
+  for (NodeState& node : nodes_) {
+    const bool preloaded = node.stale || (node.offered == next_ && next_ != current_);
+    const auto shown = before.looks_of(old, node.address.node).first(node.address.channels);
+    node.stays = node.right && !preloaded && std::ranges::equal(shown, looks(k, node));
+  }
+  seek(k);
+  placed_ = true;
+  for (NodeState& node : nodes_) {
+    if (!node.stays) continue;
+    node.right = true;
+    node.verify = false;
+  }
+  taking_ = nullptr;
 }
 
 void BusLoop::switch_over(bool latched) noexcept {
@@ -380,7 +430,7 @@ void BusLoop::on_boot(NodeState& node) noexcept {
     if (&nodes_[worn.position] == &node) worn.held = worn.pending = kNone;
   }
   // It has lost its look table, too: first what it must show, the rest in idle time.
-  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) uploads_[i] = std::uint8_t{kUploads};
+  for (std::size_t i = 1; i < schedule_->looks().size(); ++i) uploads_[i] = std::uint8_t{kUploads};
   need_looks(current_, node);
   need_looks(next_, node);
 }
@@ -394,7 +444,7 @@ void BusLoop::need_looks(std::size_t k, const NodeState& node) noexcept {
 bool BusLoop::settled() const noexcept {
   if (nodes_.empty()) return true;
   if (!started_) return false;
-  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) {
+  for (std::size_t i = 1; i < schedule_->looks().size(); ++i) {
     if (urgent_[i] && uploads_[i] > 0) return false;
   }
   return std::ranges::all_of(nodes_, [](const NodeState& node) { return node.right || node.quarantined; });
@@ -412,14 +462,15 @@ std::vector<NodeIndex> BusLoop::quarantined() const {
   return list;
 }
 
-Duration BusLoop::notice(std::size_t from, std::size_t to) const noexcept {
+Duration BusLoop::notice(const CueSchedule& schedule, std::size_t from, std::size_t to) const noexcept {
   if (can_.sequenced_latch) {
     // What is on the wire at the GO ends, then the latch takes its time.
     return latch_time_ + std::max({status_time_, heartbeat_time_, upload_time_, preload_time_[kChannelsPerNode]});
   }
   Duration sum{};
   for (const NodeState& node : nodes_) {
-    if (!std::ranges::equal(looks(from, node), looks(to, node))) sum += preload_time_[node.address.channels];
+    const auto of = [&](std::size_t k) { return schedule.looks_of(k, node.address.node).first(node.address.channels); };
+    if (!std::ranges::equal(of(from), of(to))) sum += preload_time_[node.address.channels];
   }
   return 3 * sum + 2 * latch_time_ + milliseconds(20);
 }
@@ -433,7 +484,7 @@ Duration BusLoop::suspect_time() const {
 }
 
 std::span<const LookIndex> BusLoop::looks(std::size_t k, const NodeState& node) const noexcept {
-  return schedule_.looks_of(k, node.address.node).first(node.address.channels);
+  return schedule_->looks_of(k, node.address.node).first(node.address.channels);
 }
 
 std::uint64_t BusLoop::changed_channels(const NodeState& node) const noexcept {

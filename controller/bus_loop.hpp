@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -61,6 +62,16 @@ class BusLoop final : private drivers::EventSink {
   BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> nodes, drivers::Driver& driver,
           const std::vector<SwitchOn>& switch_on = {});
 
+  class Part;
+  /// What this loop needs of another schedule for the same nodes, whose looks have the same numbers (look_table.hpp).
+  /// Any thread. @param before that it will have until then
+  [[nodiscard]] std::unique_ptr<Part> part_of(const CueSchedule& schedule, const CueSchedule& before) const;
+  /// Goes over to another schedule as soon as its driver has finished what is under way; targets of the next steps mean
+  /// that one. No lamp changes by it: a node that shows what it should stays as it is. @param part borrowed until
+  /// `schedule` is the new one; then it may go with the old schedule
+  void take(Part& part) noexcept { taking_ = &part; }
+  [[nodiscard]] const CueSchedule& schedule() const noexcept { return *schedule_; }
+
   /// Does what is due. @return when to call again, if nothing arrives before
   Instant step(Instant now, const BusTarget& target) noexcept;
 
@@ -93,9 +104,11 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] const Lateness& lateness() const noexcept { return lateness_; }
   /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not late.
   /// Any thread, at any time. @param from what is lit before  O(nodes)
-  [[nodiscard]] Duration notice(std::size_t from, std::size_t to) const noexcept;
+  [[nodiscard]] Duration notice(const CueSchedule& schedule, std::size_t from, std::size_t to) const noexcept;
   /// From the switch before.
-  [[nodiscard]] Duration notice(std::size_t k) const { return k == 0 ? Duration{} : notice(k - 1, k); }
+  [[nodiscard]] Duration notice(const CueSchedule& schedule, std::size_t k) const {
+    return k == 0 ? Duration{} : notice(schedule, k - 1, k);
+  }
   /// Time in which a silent node is noticed: 1 s, or a round of questions that takes a fifth of the bus.
   [[nodiscard]] Duration suspect_time() const;
 
@@ -124,6 +137,7 @@ class BusLoop final : private drivers::EventSink {
     std::uint8_t offers = 0;      ///< preloads of `offered` sent
     std::size_t offered = kNone;  ///< switch preloaded last
     bool in_flight = false;       ///< a preload is under way
+    bool stays = false;           ///< while the loop goes over to another schedule: shows the same in both
     bool stale = false;           ///< holds looks of a switch that will not come: they have to be written over
     std::size_t pending = kNone;  ///< switch whose preload is receipted and not yet latched
     Instant silent_since;         ///< first of the misses in a row
@@ -135,6 +149,7 @@ class BusLoop final : private drivers::EventSink {
     Instant turn;  ///< it may be lit from then on
   };
 
+  [[nodiscard]] std::vector<WornState> worn_in(const CueSchedule& schedule) const;
   void on_event(const drivers::DeviceEvent& event) override;
   void on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept;
   void on_miss(NodeState& node) noexcept;
@@ -148,6 +163,7 @@ class BusLoop final : private drivers::EventSink {
   void follow(const BusTarget& target) noexcept;
   void aim(std::size_t next, Instant at) noexcept;
   void seek(std::size_t k) noexcept;
+  void go_over(std::size_t k) noexcept;
   void switch_over(bool latched) noexcept;
 
   // One operation, or false when there is nothing to do now. In this order of importance.
@@ -195,7 +211,8 @@ class BusLoop final : private drivers::EventSink {
   void follow_time() noexcept;
   bool latch_current() noexcept;
 
-  const CueSchedule& schedule_;
+  const CueSchedule* schedule_;
+  Part* taking_ = nullptr;  ///< schedule to go over to
   drivers::Driver& driver_;
   drivers::Capabilities can_;
   // The driver's budgets, asked once: they are wanted at every step.
@@ -248,6 +265,13 @@ class BusLoop final : private drivers::EventSink {
   Instant followed_at_;
   Duration followed_{};
   Instant sync_at_;
+};
+
+class BusLoop::Part {
+  friend class BusLoop;
+  const CueSchedule* schedule = nullptr;
+  std::vector<WornState> worn;
+  std::array<bool, 256> fresh{};  ///< looks that the markers do not know yet
 };
 
 }  // namespace footlight::controller

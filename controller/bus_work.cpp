@@ -99,12 +99,12 @@ bool BusLoop::upload(bool urgent_only) noexcept {
     return false;
   }
   std::size_t most = 0;
-  for (std::size_t i = 1; i < schedule_.looks().size(); ++i) {
+  for (std::size_t i = 1; i < schedule_->looks().size(); ++i) {
     if ((!urgent_only || urgent_[i]) && uploads_[i] > (most == 0 ? 0 : uploads_[most])) most = i;
   }
   if (most == 0) return false;
   const auto index = static_cast<LookIndex>(most);
-  if (!took(driver_.upload_look(index, schedule_.looks()[most], now_), Operation::upload, upload_time_)) return false;
+  if (!took(driver_.upload_look(index, schedule_->looks()[most], now_), Operation::upload, upload_time_)) return false;
   if (--uploads_[most] == 0) urgent_[most] = false;
   return true;
 }
@@ -250,7 +250,7 @@ bool BusLoop::send_time() noexcept {
 bool BusLoop::send_content() noexcept {
   if (worn_.empty() || !fits(std::max(content_time_, time_of(Operation::content)))) return false;
   const auto same = [&](std::size_t w, std::size_t a, std::size_t b) {
-    return a != kNone && (a == b || schedule_.content(a, w) == schedule_.content(b, w));
+    return a != kNone && (a == b || schedule_->content(a, w) == schedule_->content(b, w));
   };
   for (WornState& worn : worn_) {
     const NodeState& node = nodes_[worn.position];
@@ -270,7 +270,7 @@ bool BusLoop::send_content() noexcept {
 bool BusLoop::send_content(WornState& worn, std::size_t k) noexcept {
   const NodeState& node = nodes_[worn.position];
   const drivers::SendStatus status = driver_.send_content(
-      node.address, worn.channel, k == current_ ? node.shown : sequence_of(k), schedule_.content(k, worn.index), now_);
+      node.address, worn.channel, k == current_ ? node.shown : sequence_of(k), schedule_->content(k, worn.index), now_);
   if (!took(status, Operation::content, content_time_)) return false;
   sent_content_ = k;
   return true;
@@ -302,9 +302,9 @@ bool BusLoop::ask_quarantined(bool hopeful_only) noexcept {
 }
 
 bool BusLoop::refresh() noexcept {
-  if (now_ >= table_refresh_at_ && schedule_.looks().size() > 1) {
+  if (now_ >= table_refresh_at_ && schedule_->looks().size() > 1) {
     table_refresh_at_ = now_ + kTableRefresh;
-    table_cursor_ = table_cursor_ + 1 < schedule_.looks().size() ? table_cursor_ + 1 : 1;
+    table_cursor_ = table_cursor_ + 1 < schedule_->looks().size() ? table_cursor_ + 1 : 1;
     if (uploads_[table_cursor_] == 0) uploads_[table_cursor_] = 1;
   }
   if (now_ < refresh_at_ || nodes_.empty()) return false;

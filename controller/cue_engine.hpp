@@ -83,6 +83,8 @@ class CueEngine {
   [[nodiscard]] bool finished() const noexcept { return !active_ && next_cue_ == plays_.size(); }
   /// Of the active cue, or of the standby.
   [[nodiscard]] int percent() const noexcept;
+  /// The tempo that was asked for, limited or not.
+  [[nodiscard]] int wanted_percent() const noexcept { return wanted_percent_; }
   /// Fastest of the active cue, or of the standby.
   [[nodiscard]] int limit_percent() const noexcept;
   [[nodiscard]] const std::vector<CuePlay>& plays() const noexcept { return plays_; }

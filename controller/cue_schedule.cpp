@@ -79,13 +79,14 @@ class Compiler {
   }
 
   /// With the numbers of another schedule, for lamps that are lit beside it.
-  ResetMove compile_like(const CueSchedule& schedule) {
+  ResetMove compile_like(const CueSchedule& schedule, bool stand) {
     pattern_ = schedule.numbers().pattern;
     const Written written = write();
     ResetMove move;
     for (const std::uint16_t entry : written.entries) move.table.push_back(number_like(schedule.numbers(), entry));
     move.switches = switches();
     move.contents = std::move(contents_.table);
+    if (stand) return move;
     // Here people stand already: the show's own lamps say so.
     const auto row = static_cast<std::ptrdiff_t>(nodes_ * kChannelsPerNode);
     move.switches.erase(move.switches.begin());
@@ -252,6 +253,21 @@ void CueSchedule::set_contents(WearableContents contents) {
   contents_ = std::move(contents);
 }
 
+void CueSchedule::renumber(std::vector<Look> looks, std::span<const LookIndex> now, std::uint8_t plan_byte) {
+  FL_CHECK(resets_->count.load() == 0 && looks.size() <= kMostLooks && now.size() == looks_.size() && now[0] == kDark);
+  looks_ = std::move(looks);
+  plan_byte_ = plan_byte;
+  for (LookIndex& look : table_) look = now[look];
+  for (LookIndex& look : numbers_.of_entry) look = now[look];
+}
+
+std::vector<bool> CueSchedule::numbers_shown() const {
+  std::vector<bool> shown(looks_.size(), false);
+  for (const LookIndex look : table_) shown[look] = true;
+  for (const LookIndex look : numbers_.of_entry) shown[look] = true;
+  return shown;
+}
+
 const ResetMove& CueSchedule::reset_of(std::size_t k) const {
   const std::size_t slot = (k - switches_.size()) / kMostResetSwitches;
   FL_CHECK(slot < resets_->count.load(std::memory_order_acquire));
@@ -327,9 +343,9 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   return schedule;
 }
 
-ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule) {
+ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule, bool stand) {
   FL_CHECK(move.valid && schedule.numbers().pattern.size() == move.tracks.size());
-  return Compiler(show, move, rig, {}).compile_like(schedule);
+  return Compiler(show, move, rig, {}).compile_like(schedule, stand);
 }
 
 }  // namespace footlight::controller

@@ -87,6 +87,10 @@ class CueSchedule {
   void set_contents(WearableContents contents);
   [[nodiscard]] const LookNumbers& numbers() const { return numbers_; }
   void set_numbers(LookNumbers numbers) { numbers_ = std::move(numbers); }
+  /// Other numbers for the same looks. @param looks the whole table  @param now of each number so far
+  void renumber(std::vector<Look> looks, std::span<const LookIndex> now, std::uint8_t plan_byte);
+  /// Numbers that a lamp may show: of the show, or of a reset move.
+  [[nodiscard]] std::vector<bool> numbers_shown() const;
   /// What the rig's supplies have to give; empty unless the rig lists supplies.
   [[nodiscard]] const std::vector<SupplyLoad>& supplies() const { return supplies_; }
   void set_supplies(std::vector<SupplyLoad> supplies) { supplies_ = std::move(supplies); }
@@ -131,7 +135,9 @@ class CueSchedule {
 /// Compiles a way back with the looks and patterns of the show's schedule; a look that the show never needs is replaced
 /// by the most similar one that it has (another pattern, then another role of the same colour).
 /// @param move a valid plan of two sections: people stand, from time 0 on, then walk
+/// @param stand begin with a switch at time 0 that shows people where they stand: no switch of the show does
 /// Complexity: as build_schedule.
-[[nodiscard]] ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule);
+[[nodiscard]] ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule,
+                                    bool stand = false);
 
 }  // namespace footlight::controller

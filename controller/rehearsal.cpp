@@ -24,7 +24,7 @@ std::optional<Outcome> refusal(Bars bars) {
 }  // namespace
 
 std::string_view to_text(Outcome outcome) {
-  constexpr std::array<std::string_view, 22> kTexts{
+  constexpr std::array<std::string_view, 23> kTexts{
       "done",
       "the cue starts",
       "the show goes on",
@@ -41,6 +41,7 @@ std::string_view to_text(Outcome outcome) {
       "nothing runs",
       "this is the top of the show",
       "no reset move is asked for",
+      "people have to go to their places of the new plan first: GO lights the way",
       "the loop has no length: nobody stands at its beginning before its end",
       "a gate that it needs is open, or nobody knows",
       "a hold button is pressed",
@@ -64,6 +65,28 @@ Rehearsal::Rehearsal(CueEngine& engine, TempoMap tempo, Stands stands, Settings 
 void Rehearsal::begin_at(Instant position) noexcept {
   const auto& plays = engine_.plays();
   engine_.place(std::clamp(position, plays.front().from, plays.back().to));
+}
+
+void Rehearsal::begin_elsewhere(Instant position, std::size_t first, const ResetMove& move) noexcept {
+  begin_at(position);
+  reset_ = {ResetState::ready, ++resets_asked_, engine_.position(), engine_.position()};
+  planned_ = &move;
+  first_ = first;
+  elsewhere_ = true;
+}
+
+void Rehearsal::carry_on(const Rehearsal& before, Instant now) noexcept {
+  now_ = now;
+  guard_ = before.guard_;
+  bars_ = before.bars_;
+  resets_asked_ += before.resets_asked_;  // an answer that is still on its way is none of ours
+  reset_.id += before.resets_asked_;
+  engine_.set_tempo(now, before.engine_.wanted_percent());
+}
+
+bool Rehearsal::may_change_plan() const noexcept {
+  const Instant here = engine_.position();
+  return !runs() && !resets() && reset_.state == ResetState::none && engine_.waits() && stands_.until(here) == here;
 }
 
 // ---- time
@@ -96,6 +119,7 @@ BusTarget Rehearsal::target() const noexcept {
     const double left_s = to_seconds(at - now_) * target.rate;
     target.show_time -= seconds(std::min(left_s, 60.0));
   }
+  if (elsewhere_) target.current = first_;
   if (resets()) {
     if (rows_lit_ > 0) target.current = row_switch(rows_lit_ - 1);
     target.next = row_switch(rows_lit_);
@@ -103,7 +127,7 @@ BusTarget Rehearsal::target() const noexcept {
     target.show_time = move_held_.value_or(std::max(Duration{}, now_ - move_at_));
     target.rate = 1;
   } else if (planned_ != nullptr && stands_for_reset()) {
-    target.next = rows() > 0 ? first_ : lit_at(engine_.schedule(), reset_.to, true);
+    target.next = rows() > first_row() ? first_ + first_row() : lit_at(engine_.schedule(), reset_.to, true);
     target.next_at = kNever;
   }
   return target;
@@ -229,6 +253,7 @@ Outcome Rehearsal::hold_at_end(Instant now) noexcept {
 Outcome Rehearsal::step_count(Instant now) noexcept {
   if (resets()) return Outcome::reset_runs;
   if (runs()) return Outcome::cue_runs;
+  if (elsewhere_) return Outcome::reset_first;
   if (reset_.state != ResetState::none) return Outcome::being_planned;
   if (engine_.finished()) return Outcome::nothing_left;
   if (const auto against = refusal(barred())) return *against;
@@ -259,6 +284,7 @@ Outcome Rehearsal::back(Instant now) noexcept {
 
 Outcome Rehearsal::jump(Instant position, Instant now) noexcept {
   if (resets()) return Outcome::reset_runs;
+  if (elsewhere_) return Outcome::reset_first;
   const auto& plays = engine_.plays();
   const Instant to = stands_.until(std::clamp(position, plays.front().from, plays.back().to));
   const Instant here = engine_.position();
@@ -277,6 +303,7 @@ Outcome Rehearsal::set_loop(const Command& command, Instant now) noexcept {
   const Loop loop{stands_.until(on_the_show(command.position)), stands_.from(on_the_show(command.until), true)};
   if (loop.to <= loop.from) return Outcome::empty_range;
   if (resets()) return Outcome::reset_runs;
+  if (elsewhere_) return Outcome::reset_first;
   loop_ = loop;
   const Instant here = engine_.position();
   return here >= loop.from && here < loop.to ? Outcome::done : jump(loop.from, now);
@@ -301,7 +328,7 @@ Outcome Rehearsal::start_reset(Instant now) noexcept {
   if (reset_.state == ResetState::impossible) return Outcome::no_way;
   const Duration notice = notice_(engine_.target().current, target().next);
   move_ = planned_;
-  rows_lit_ = 0;
+  rows_lit_ = first_row();
   move_held_.reset();
   move_at_ = now + std::max(notice, kResetLead);
   return Outcome::reset_started;
@@ -309,6 +336,7 @@ Outcome Rehearsal::start_reset(Instant now) noexcept {
 
 void Rehearsal::arrive() noexcept {
   engine_.place(reset_.to);
+  elsewhere_ = false;
   move_ = planned_ = nullptr;
   move_held_.reset();
   reset_ = {};
@@ -323,6 +351,7 @@ Outcome Rehearsal::placed() noexcept {
 
 Outcome Rehearsal::cancel() noexcept {
   if (resets()) return Outcome::reset_runs;
+  if (elsewhere_) return Outcome::reset_first;
   if (reset_.state == ResetState::none) return Outcome::no_reset;
   reset_ = {};
   planned_ = nullptr;

@@ -63,7 +63,8 @@ enum class Outcome : std::uint8_t {
   reset_runs,
   nothing_runs,
   at_the_top,
-  no_reset,  ///< none is asked for
+  no_reset,     ///< none is asked for
+  reset_first,  ///< people stand elsewhere: the way to here comes before any other
   empty_range,
   gate_open,     ///< that the cue needs, or nobody knows
   hold_pressed,  ///< a hold button
@@ -111,6 +112,13 @@ class Rehearsal {
   /// The show stands here, held, also in the middle of a walk: a program that was started again, at the place where
   /// people were last. Before the first step. @param position clamped to the show
   void begin_at(Instant position) noexcept;
+  /// The show stands here, and people stand elsewhere: before anything else a reset move, which only waits for GO.
+  /// @param first its first switch, which shows people where they stand (build_reset, `stand`)
+  void begin_elsewhere(Instant position, std::size_t first, const ResetMove& move) noexcept;
+  /// Takes what does not belong to a plan from the rehearsal of the plan before: tempo, what the GO guard knows, bars.
+  void carry_on(const Rehearsal& before, Instant now) noexcept;
+  /// True where another plan may be taken: everybody stands on a cell, nothing runs and nobody is on another way.
+  [[nodiscard]] bool may_change_plan() const noexcept;
 
   /// Lets everything up to and including `now` happen. `now` never goes back.
   void step(Instant now) noexcept;
@@ -157,6 +165,8 @@ class Rehearsal {
   [[nodiscard]] bool resets() const noexcept { return move_ != nullptr; }
   [[nodiscard]] bool stands_for_reset() const noexcept;
   [[nodiscard]] Duration count_in() const noexcept;
+  /// 1 where the first row of the move is lit already.
+  [[nodiscard]] std::size_t first_row() const noexcept { return elsewhere_ ? 1 : 0; }
   /// Rows of the reset move that are lit: all but the last.
   [[nodiscard]] std::size_t rows() const noexcept;
   [[nodiscard]] Instant row_at(std::size_t row) const noexcept;
@@ -179,6 +189,7 @@ class Rehearsal {
   const ResetMove* planned_ = nullptr;
   const ResetMove* move_ = nullptr;
   std::size_t first_ = 0;              ///< its first switch
+  bool elsewhere_ = false;             ///< people do not stand where the show does
   Instant move_at_{};                  ///< clock time at which it begins or began
   std::size_t rows_lit_ = 0;           ///< of it
   std::optional<Duration> move_held_;  ///< it stands so far from its beginning

@@ -169,6 +169,9 @@ class Driver {
   /// True when another operation would be accepted now.
   [[nodiscard]] virtual bool ready() const = 0;
 
+  /// From now on frames carry the plan byte of another plan. Only while `ready`: what is under way is the old plan's.
+  virtual void take_plan(std::uint8_t /*plan_byte*/) {}
+
   // Operations: accepted means under way; what comes of it is told by events of the following steps. Step once after
   // each, which tells when to step next.
   virtual SendStatus start(Instant now) = 0;  ///< wakes the nodes of the bus (CANopen NMT start; nothing elsewhere)

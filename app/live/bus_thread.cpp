@@ -57,8 +57,31 @@ Instant BusThread::step(Instant now) noexcept {
   deaf_ += deaf && !is_deaf_ ? 1 : 0;
   is_deaf_ = deaf;
   if (deaf) return now + kLook;
+  if (told.plan != plan_.load(std::memory_order_relaxed)) return go_over(now, told);
   const Instant wish = loop_.step(now, told.target);
   note(now);
+  return wish;
+}
+
+/// The loop takes the other schedule when its driver is ready; until then nothing of the new plan is sent.
+Instant BusThread::go_over(Instant now, const SharedTarget::Told& told) noexcept {
+  Next& next = *next_.load(std::memory_order_acquire);
+  if (before_ == nullptr) {
+    before_ = &loop_.schedule();
+    loop_.take(*next.part);
+    for (std::size_t i = 0; board_ != nullptr && i < loop_.nodes(); ++i) {
+      board_->put(loop_.standing(i).node.at(), {NodeBoard::kNothingYet, 0});
+    }
+    told_.store(told.plan, std::memory_order_release);
+  }
+  const Instant wish = loop_.step(now, told.target);
+  if (&loop_.schedule() == before_) return wish;
+  before_ = nullptr;
+  times_.swap(next.times);
+  lit_ = std::min(loop_.lit(), times_.size() - 1);
+  latches_ = loop_.counters().latches;
+  note(now);
+  plan_.store(told.plan, std::memory_order_release);
   return wish;
 }
 

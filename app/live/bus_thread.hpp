@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -43,11 +44,25 @@ class BusThread {
 
   /// Before `start`. @param board told what becomes of each node; borrowed
   void tell(NodeBoard& board) { board_ = &board; }
+  /// What the thread needs of another plan, to go over to it when the cue thread says so.
+  struct Next {
+    std::uint32_t plan = 0;
+    std::unique_ptr<controller::BusLoop::Part> part;
+    /// One for each switch; of the plan before, when the thread has gone over.
+    std::vector<SwitchTimes> times{};
+  };
+
   void start();
   void stop();
+  /// Before the cue thread is told. @param next borrowed until `plan` is its number
+  void prepare(Next& next) noexcept { next_.store(&next, std::memory_order_release); }
   void wake() const noexcept { waiting_.wake(); }
 
   // Any thread.
+  /// Number of the newest plan that it has been told of: its nodes on the board know nothing of earlier ones.
+  [[nodiscard]] std::uint32_t told() const noexcept { return told_.load(std::memory_order_acquire); }
+  /// Number of the plan whose lamps it brings about.
+  [[nodiscard]] std::uint32_t plan() const noexcept { return plan_.load(std::memory_order_acquire); }
   [[nodiscard]] bool settled() const noexcept { return settled_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::size_t unconfirmed() const noexcept { return unconfirmed_.load(std::memory_order_relaxed); }
 
@@ -69,6 +84,7 @@ class BusThread {
   Instant step(Instant now) noexcept;
   void note(Instant now) noexcept;
   void tell_board(Instant now) noexcept;
+  Instant go_over(Instant now, const SharedTarget::Told& told) noexcept;
 
   controller::BusLoop& loop_;
   std::function<int()> poll_handle_;
@@ -76,6 +92,10 @@ class BusThread {
   const Clock& clock_;
   Waiting waiting_;
   std::atomic<bool> stopping_{false};
+  std::atomic<Next*> next_{nullptr};
+  std::atomic<std::uint32_t> plan_{0};
+  std::atomic<std::uint32_t> told_{0};
+  const controller::CueSchedule* before_ = nullptr;  ///< while the loop goes over: the one that it had
   std::atomic<bool> settled_{false};
   std::atomic<std::size_t> unconfirmed_{0};
   std::atomic<std::size_t> quarantined_{0};

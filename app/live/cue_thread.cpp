@@ -17,13 +17,12 @@ int as_number(const std::optional<std::size_t>& cue) { return cue ? static_cast<
 
 }  // namespace
 
-CueThread::CueThread(ShowOnWires& show, controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock)
-    : show_(show),
-      rehearsal_(rehearsal),
+CueThread::CueThread(controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock)
+    : rehearsal_(&rehearsal),
       target_(target),
       clock_(clock),
       waiting_(clock),
-      go_at_(show.plays.size(), kNever) {}
+      go_at_(rehearsal.engine().plays().size(), kNever) {}
 
 void CueThread::start(std::function<void()> news) {
   news_ = std::move(news);
@@ -44,6 +43,18 @@ bool CueThread::tell(const Command& command) noexcept {
   return taken;
 }
 
+void CueThread::hand_over(Next& next) noexcept {
+  handed_.store(Handed::waiting, std::memory_order_relaxed);
+  next_.store(&next, std::memory_order_release);
+  waiting_.wake();
+}
+
+CueThread::Handed CueThread::handed() noexcept {
+  const Handed now = handed_.load(std::memory_order_acquire);
+  if (now == Handed::done || now == Handed::refused) handed_.store(Handed::nothing, std::memory_order_relaxed);
+  return now;
+}
+
 void CueThread::press_go_whenever_it_waits() noexcept {
   by_itself_.store(true, std::memory_order_relaxed);
   waiting_.wake();
@@ -57,13 +68,14 @@ void CueThread::run() noexcept {
   real_time_ = ask_for_real_time();
   while (!stopping_.load(std::memory_order_relaxed)) {
     const Instant now = clock_.now();
-    rehearsal_.step(now);
+    rehearsal_->step(now);
     const controller::Bars bars = bars_.load(std::memory_order_acquire);
-    if (bars != std::exchange(barred_, bars)) rehearsal_.set_bars(bars, now);
+    if (bars != std::exchange(barred_, bars)) rehearsal_->set_bars(bars, now);
     take_commands(now);
+    go_over(now);
     if (by_itself_.load(std::memory_order_relaxed)) press_by_itself(now);
     publish(now);
-    Instant next = std::min(now + kPublish, rehearsal_.next_event());
+    Instant next = std::min(now + kPublish, rehearsal_->next_event());
     if (by_itself_.load(std::memory_order_relaxed)) next = std::min(next, go_.next());
     waiting_.until(next);
   }
@@ -79,39 +91,56 @@ void CueThread::take_commands(Instant now) noexcept {
 }
 
 void CueThread::carry_out(const Command& command, Instant now) noexcept {
-  const auto standby = rehearsal_.engine().standby();
-  const controller::Outcome outcome = rehearsal_.apply(command, now);
+  const auto standby = rehearsal_->engine().standby();
+  const controller::Outcome outcome = rehearsal_->apply(command, now);
   if (outcome == controller::Outcome::cue_started && standby) go_at_[*standby] = now;
   (void)answers_.push({command, outcome, now});  // full: nobody listens
+}
+
+void CueThread::go_over(Instant now) noexcept {
+  Next* next = next_.exchange(nullptr, std::memory_order_acquire);
+  if (next == nullptr) return;
+  const bool may = rehearsal_->may_change_plan() && rehearsal_->engine().position() == next->from;
+  if (may) {
+    next->rehearsal->carry_on(*rehearsal_, now);
+    rehearsal_ = next->rehearsal;
+    rehearsal_->step(now);
+    go_at_.swap(next->go_at);
+    plan_ = next->plan;
+    publish(now);  // what the calling thread reads after `handed` is of this plan
+    news_();
+  }
+  handed_.store(may ? Handed::done : Handed::refused, std::memory_order_release);
 }
 
 void CueThread::press_by_itself(Instant now) noexcept {
   if (!told_) go_ = GoWhenWaiting(now);
   told_ = true;
-  if (go_.due(rehearsal_.engine(), now)) carry_out(Command{}, now);
+  if (go_.due(rehearsal_->engine(), now)) carry_out(Command{}, now);
 }
 
 void CueThread::publish(Instant now) noexcept {
-  const BusTarget target = rehearsal_.target();
-  target_.publish(target, now);
-  const controller::CueEngine& engine = rehearsal_.engine();
+  const BusTarget target = rehearsal_->target();
+  target_.publish(target, now, plan_);
+  const controller::CueEngine& engine = rehearsal_->engine();
   ShowState state;
-  state.phase = rehearsal_.phase();
-  state.reset = rehearsal_.reset();
-  state.loops = rehearsal_.loop().has_value();
-  state.loop = rehearsal_.loop().value_or(controller::Rehearsal::Loop{});
-  state.holds_at_end = rehearsal_.holds_at_end();
+  state.phase = rehearsal_->phase();
+  state.reset = rehearsal_->reset();
+  state.loops = rehearsal_->loop().has_value();
+  state.loop = rehearsal_->loop().value_or(controller::Rehearsal::Loop{});
+  state.holds_at_end = rehearsal_->holds_at_end();
   state.percent = engine.percent();
   state.limit_percent = engine.limit_percent();
   state.active = as_number(engine.active());
   state.standby = as_number(engine.standby());
   state.position = engine.position();
-  state.goes_at = rehearsal_.goes_at();
+  state.goes_at = rehearsal_->goes_at();
   if (engine.active()) state.ends_at = engine.clock_at(engine.plays()[*engine.active()].to);
   state.at = now;
-  state.barred = rehearsal_.barred();
-  state.inputs_off = rehearsal_.inputs_off();
+  state.barred = rehearsal_->barred();
+  state.inputs_off = rehearsal_->inputs_off();
   state.target = target;
+  state.plan = plan_;
   state_.write(state);
   const bool news = target.current != last_.current || target.next != last_.next || target.next_at != last_.next_at;
   last_ = target;

@@ -35,6 +35,7 @@ struct ShowState {
   controller::Bars barred = 0;   ///< what stands against whatever would come next, or holds what runs
   std::uint64_t inputs_off = 0;  ///< bit i: input i of the GO guard is switched off
   controller::BusTarget target{};
+  std::uint32_t plan = 0;  ///< whose cues and switches these are (SharedTarget)
 };
 
 /// A command and what came of it.
@@ -48,7 +49,8 @@ struct Answer {
 /// allocates, logs nor touches a file; a flood of commands costs commands, and no cue.
 class CueThread {
  public:
-  CueThread(ShowOnWires& show, controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock);
+  /// Borrows everything; a rehearsal until another plan is taken.
+  CueThread(controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock);
   ~CueThread() { stop(); }
   CueThread(const CueThread&) = delete;
   CueThread& operator=(const CueThread&) = delete;
@@ -57,7 +59,21 @@ class CueThread {
   void start(std::function<void()> news);
   void stop();
 
+  /// Another plan, put together beside the show.
+  struct Next {
+    std::uint32_t plan = 0;
+    controller::Rehearsal* rehearsal = nullptr;  ///< it stands already where the show will stand in that plan
+    std::vector<Instant> go_at{};                ///< kNever for each of its cues; then of the plan before
+    Instant from{};                              ///< where the show has to stand in the plan before
+  };
+  enum class Handed : std::uint8_t { nothing, waiting, done, refused };
+
   // One thread.
+  /// Goes over to another plan at once, or not at all where the show does not stand at `from` with everybody on a cell:
+  /// `handed` tells. @param next borrowed until then
+  void hand_over(Next& next) noexcept;
+  /// What has come of it; done and refused are told once.
+  [[nodiscard]] Handed handed() noexcept;
   /// @return false when there are too many: it is lost
   bool tell(const controller::Command& command) noexcept;
   std::optional<Answer> answer() noexcept { return answers_.pop(); }
@@ -76,11 +92,11 @@ class CueThread {
   void run() noexcept;
   void take_commands(Instant now) noexcept;
   void carry_out(const controller::Command& command, Instant now) noexcept;
+  void go_over(Instant now) noexcept;
   void press_by_itself(Instant now) noexcept;
   void publish(Instant now) noexcept;
 
-  ShowOnWires& show_;
-  controller::Rehearsal& rehearsal_;
+  controller::Rehearsal* rehearsal_;
   SharedTarget& target_;
   const Clock& clock_;
   Waiting waiting_;
@@ -88,6 +104,9 @@ class CueThread {
   SpscRing<controller::Command, 64> commands_;
   SpscRing<Answer, 256> answers_;
   SeqLock<ShowState> state_;
+  std::atomic<Next*> next_{nullptr};
+  std::atomic<Handed> handed_{Handed::nothing};
+  std::uint32_t plan_ = 0;
   std::atomic<bool> stopping_{false};
   std::atomic<bool> by_itself_{false};
   std::atomic<controller::Bars> bars_{0};

@@ -13,6 +13,7 @@
 #include "app/live/bare_timer.hpp"
 #include "app/live/bus_thread.hpp"
 #include "app/live/cue_thread.hpp"
+#include "app/live/plays_in_turn.hpp"
 #include "app/live/reset_moves.hpp"
 #include "app/live/shared_target.hpp"
 #include "app/show_on_wires.hpp"
@@ -48,10 +49,9 @@ class LiveRun {
         rig_(rig),
         wires_(wires),
         options_(options),
-        rehearsal_(*wires.engine, show.tempo, controller::Stands(plan), options.rehearsal,
-                   [this](std::size_t from, std::size_t to) { return notice(from, to); }),
-        cue_(wires, rehearsal_, target_, clock_),
-        resets_(show, rig, *wires.schedule, options.plan_way) {
+        plans_(wires, show.tempo, controller::Stands(plan), options.rehearsal),
+        cue_(plans_.rehearsal(), target_, clock_) {
+    resets_.emplace(show, rig, *wires.schedule, options.plan_way);
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
       ports_.push_back(drivers::reference(ports[b]));
       auto handle = [port = ports_.back()] {
@@ -79,11 +79,6 @@ class LiveRun {
   [[nodiscard]] bool settled() const {
     return std::ranges::all_of(threads_, [](const auto& bus) { return bus->settled(); });
   }
-  [[nodiscard]] Duration notice(std::size_t from, std::size_t to) const noexcept {
-    Duration notice{};
-    for (const auto& loop : wires_.loops) notice = std::max(notice, loop->notice(from, to));
-    return notice;
-  }
   void wait() const;
   void look_on();
   void listen_to_the_desk();
@@ -94,7 +89,13 @@ class LiveRun {
   void say_moment(const BusTarget& target);
   LiveReport report(const BareTimer& bare, Duration run);
   LiveBusReport report_bus(std::size_t b, Duration run) const;
-  void report_switches(LiveReport& report) const;
+  void change_plan();
+  /// @param times of a bus, one for each switch; null: it has not gone over to the plan
+  void add_switches(std::size_t switches, const std::function<const std::vector<SwitchTimes>*(std::size_t bus)>& times,
+                    LiveReport& report) const;
+  [[nodiscard]] const std::vector<SwitchTimes>* times_of(std::size_t b) const {
+    return threads_[b]->plan() == plans_.number() ? &threads_[b]->times() : nullptr;
+  }
   void report_cues(LiveReport& report) const;
   void report_floor(LiveReport& report) const;
 
@@ -105,9 +106,10 @@ class LiveRun {
   const LiveOptions& options_;
   SteadyClock clock_;
   SharedTarget target_;
-  controller::Rehearsal rehearsal_;
+  PlaysInTurn plans_;
   CueThread cue_;
-  ResetMoves resets_;
+  std::optional<ResetMoves> resets_;
+  LiveReport over_;  ///< figures of the switches of plans before
   std::vector<std::unique_ptr<BusThread>> threads_;
   Lateness wake_;
   bool roll_called_ = false;
@@ -122,7 +124,7 @@ class LiveRun {
 Result<LiveReport> LiveRun::play() {
   const Instant began = clock_.now();
   BareTimer bare(clock_);
-  if (options_.position) rehearsal_.begin_at(*options_.position);
+  if (options_.position) plans_.rehearsal().begin_at(*options_.position);
   cue_.start([this] {
     for (const auto& bus : threads_) bus->wake();
   });
@@ -160,9 +162,12 @@ bool LiveRun::over() const {
 
 void LiveRun::look_on() {
   if (!roll_called_) call_the_roll();
-  state_ = cue_.state();
+  change_plan();
+  const ShowState now = cue_.state();
+  if (now.plan != plans_.number()) return;  // the cue thread has just gone over to another plan
+  state_ = now;
   listen_to_the_desk();
-  if (const auto news = resets_.look(state_.reset)) {
+  if (const auto news = resets_->look(state_.reset)) {
     way_ = news->way;
     tell(news->command);
     if (options_.reset) options_.reset(news->text);
@@ -170,13 +175,27 @@ void LiveRun::look_on() {
   while (const auto answer = cue_.answer()) {
     if (options_.answered) options_.answered(*answer);
   }
-  const BusTarget target = target_.read().target;
-  say_moment(target);
+  say_moment(state_.target);
   if (!options_.progress) return;
-  const Duration from = wires_.plays.front().from.time_since_epoch();
-  const Duration to = wires_.plays.back().to.time_since_epoch();
+  const auto& plays = plans_.show().plays;
+  const Duration from = plays.front().from.time_since_epoch();
+  const Duration to = plays.back().to.time_since_epoch();
   const Duration position = state_.position.time_since_epoch();
   options_.progress(to_seconds(position - from) / std::max(1e-9, to_seconds(to - from)), unconfirmed());
+}
+
+void LiveRun::change_plan() {
+  if (options_.changes == nullptr) return;
+  const auto over = [this](std::size_t switches, const auto& times) {
+    add_switches(
+        switches, [&](std::size_t b) { return &times(b); }, over_);
+  };
+  if (!plans_.look(*options_.changes, state_, cue_, threads_, over)) return;
+  resets_.reset();  // it may be reading the show
+  options_.changes->taken(plans_.show());
+  resets_.emplace(show_, rig_, *plans_.show().schedule, options_.plan_way);
+  way_ = plans_.way();
+  told_ = cue_.state().target.current;
 }
 
 void LiveRun::listen_to_the_desk() {
@@ -186,7 +205,7 @@ void LiveRun::listen_to_the_desk() {
     buses_[b].quarantined = threads_[b]->quarantined();
     buses_[b].counters = threads_[b]->counters();
   }
-  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*wires_.schedule, way_});
+  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*plans_.show().schedule, way_});
   cue_.set_bars(wishes.bars);
   for (const controller::Command& command : wishes.commands) tell(command);
   ended_ = wishes.ends;
@@ -207,14 +226,15 @@ void LiveRun::call_the_roll() {
 }
 
 const controller::Switch& LiveRun::switch_of(std::size_t k) const {
-  const auto& switches = wires_.schedule->switches();
+  const auto& switches = plans_.show().schedule->switches();
   if (k < switches.size()) return switches[k];
-  return wires_.schedule->reset_of(k).switches[(k - switches.size()) % controller::CueSchedule::kMostResetSwitches];
+  return plans_.show().schedule->reset_of(k).switches[(k - switches.size()) %
+                                                      controller::CueSchedule::kMostResetSwitches];
 }
 
 void LiveRun::say_moment(const BusTarget& target) {
   if (target.current == told_) return;
-  const auto& switches = wires_.schedule->switches();
+  const auto& switches = plans_.show().schedule->switches();
   // What was passed since the last look is told, too; a reset move and a jump are places of their own.
   const bool on = told_ < target.current && target.current < switches.size();
   std::size_t k = on ? told_ + 1 : target.current;
@@ -222,7 +242,7 @@ void LiveRun::say_moment(const BusTarget& target) {
   for (; options_.moment && k <= target.current; ++k) {
     const controller::Switch& now = switch_of(k);
     const bool reset = k >= switches.size();
-    const std::string cue = now.cue && !reset ? "cue " + wires_.plays[*now.cue].cue.number.to_text() : "";
+    const std::string cue = now.cue && !reset ? "cue " + plans_.show().plays[*now.cue].cue.number.to_text() : "";
     const std::string measure = reset ? "" : show_.tempo.measure_beat(show_.tempo.count_at(now.time));
     options_.moment(
         fmt::format("{:10.3f} s  {:<10} {:>8}  {}", to_seconds(now.time), reset ? "reset" : cue, measure, now.cause));
@@ -231,12 +251,12 @@ void LiveRun::say_moment(const BusTarget& target) {
 
 LiveReport LiveRun::report(const BareTimer& bare, Duration run) {
   LiveReport out;
-  out.switches = wires_.schedule->switches().size();
+  out.switches = plans_.show().schedule->switches().size();
   for (const Node& node : rig_.nodes) {
     out.markers += static_cast<std::uint64_t>(std::ranges::count_if(
         node.channels, [](const Channel& channel) { return channel.kind != Channel::Kind::unused; }));
   }
-  out.duration_s = to_seconds(wires_.plays.back().to - wires_.plays.front().from);
+  out.duration_s = to_seconds(plans_.show().plays.back().to - plans_.show().plays.front().from);
   out.run_s = to_seconds(run);
   out.real_time = cue_.real_time();
   for (std::size_t b = 0; b < threads_.size(); ++b) {
@@ -252,7 +272,10 @@ LiveReport LiveRun::report(const BareTimer& bare, Duration run) {
   }
   out.wake = report_of(wake_);
   out.bare = report_of(bare.lateness());
-  report_switches(out);
+  out.late = over_.late;
+  out.worst_skew_ms = over_.worst_skew_ms;
+  add_switches(
+      out.switches, [this](std::size_t b) { return times_of(b); }, out);
   report_cues(out);
   report_floor(out);
   return out;
@@ -272,15 +295,19 @@ LiveBusReport LiveRun::report_bus(std::size_t b, Duration run) const {
   return bus;
 }
 
-void LiveRun::report_switches(LiveReport& report) const {
-  for (std::size_t k = 0; k < report.switches; ++k) {
+void LiveRun::add_switches(std::size_t switches,
+                           const std::function<const std::vector<SwitchTimes>*(std::size_t bus)>& times,
+                           LiveReport& report) const {
+  for (std::size_t k = 0; k < switches; ++k) {
     Instant first = kNever;
     Instant last = kStart;
     for (std::size_t b = 0; b < threads_.size(); ++b) {
-      const SwitchTimes& times = threads_[b]->times()[k];
-      if (k + 1 < report.switches) report.late += times.unconfirmed;
-      if (times.latched == kNever) continue;
-      const Instant lit = times.latched + wires_.drivers[b]->latch_time();
+      const auto* noted = times(b);
+      if (noted == nullptr) continue;
+      const SwitchTimes& one = (*noted)[k];
+      if (k + 1 < switches) report.late += one.unconfirmed;
+      if (one.latched == kNever) continue;
+      const Instant lit = one.latched + wires_.drivers[b]->latch_time();
       first = std::min(first, lit);
       last = std::max(last, lit);
     }
@@ -289,24 +316,25 @@ void LiveRun::report_switches(LiveReport& report) const {
 }
 
 void LiveRun::report_cues(LiveReport& report) const {
-  const auto& switches = wires_.schedule->switches();
-  for (std::size_t c = 0; c < wires_.plays.size(); ++c) {
+  const auto& switches = plans_.show().schedule->switches();
+  for (std::size_t c = 0; c < plans_.show().plays.size(); ++c) {
     LiveCueReport cue;
-    cue.number = wires_.plays[c].cue.number.to_text();
-    cue.name = wires_.plays[c].cue.name;
+    cue.number = plans_.show().plays[c].cue.number.to_text();
+    cue.name = plans_.show().plays[c].cue.name;
     const auto of_cue = [c](const controller::Switch& one) { return one.cue == c; };
     const auto first = std::ranges::find_if(switches, of_cue);
     if (first != switches.end()) {
       const auto k = static_cast<std::size_t>(first - switches.begin());
       const auto end = k + static_cast<std::size_t>(std::ranges::count_if(switches, of_cue)) - 1;
       for (std::size_t b = 0; b < threads_.size(); ++b) {
-        const Instant latched = threads_[b]->times()[k].latched;
+        const auto* times = times_of(b);
+        if (times == nullptr) continue;
+        const Instant latched = (*times)[k].latched;
         if (cue_.go_at()[c] != kNever && latched != kNever) {
           const Duration lit = latched + wires_.drivers[b]->latch_time() - cue_.go_at()[c];
           cue.go_to_last_lamp_ms = std::max(cue.go_to_last_lamp_ms, to_seconds(lit) * 1e3);
         }
-        cue.unconfirmed +=
-            end + 1 == switches.size() ? threads_[b]->unconfirmed() : threads_[b]->times()[end].unconfirmed;
+        cue.unconfirmed += end + 1 == switches.size() ? threads_[b]->unconfirmed() : (*times)[end].unconfirmed;
       }
     }
     report.cues.push_back(std::move(cue));
@@ -316,22 +344,10 @@ void LiveRun::report_cues(LiveReport& report) const {
 void LiveRun::report_floor(LiveReport& report) const {
   const std::size_t lit = target_.read().target.current;
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
-    const auto looks = wires_.schedule->looks_of(lit, NodeIndex::of(n));
+    const auto looks = plans_.show().schedule->looks_of(lit, NodeIndex::of(n));
     report.floor.emplace_back(looks.begin(),
                               looks.begin() + static_cast<std::ptrdiff_t>(rig_.nodes[n].channels.size()));
   }
-}
-
-void limit_tempo(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires, const LiveOptions& options) {
-  std::vector<Duration> gaps;
-  for (const controller::CuePlay& play : wires.plays)
-    gaps.push_back(play.gap_after.value_or(controller::kShortestHold));
-  const auto limits = controller::tempo_limits(plan, show.tempo, wires.plays, *wires.schedule,
-                                               controller::bus_needs(*wires.schedule, rig, wires.drivers, gaps), rig);
-  std::vector<int> percent;
-  for (const controller::TempoLimit& limit : limits) percent.push_back(limit.percent);
-  wires.engine->set_limits(std::move(percent));
-  if (options.limits) options.limits(limits);
 }
 
 }  // namespace
@@ -351,7 +367,9 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
   }
   auto wires = put_on_wires(show, plan, rig, std::move(drivers));
   if (!wires) return std::move(wires).error();
-  limit_tempo(show, plan, rig, **wires, options);
+  const auto limits = limit_tempo(show, plan, rig, **wires, **wires);
+  if (options.limits) options.limits(limits);
+  if (options.changes != nullptr) options.changes->begin(**wires);
   return LiveRun(show, plan, rig, **wires, ports, options).play();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/bus_figures.hpp"
+#include "app/live/coming_plan.hpp"
 #include "app/live/cue_thread.hpp"
 #include "app/live/node_board.hpp"
 #include "app/live/reset_moves.hpp"
@@ -120,6 +121,8 @@ struct LiveOptions {
   /// Before the first byte: the fastest tempo of each cue.
   std::function<void(const std::vector<controller::TempoLimit>&)> limits;
   ResetMoves::PlanWay plan_way;
+  /// Whoever brings other plans; null: nobody. Borrowed
+  PlanChanges* changes = nullptr;
   /// Waits for the desk, at most so long; none: the calling thread sleeps.
   std::function<void(Duration)> wait;
   const std::atomic<bool>* stop = nullptr;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "app/live/seqlock.hpp"
 #include "controller/bus_loop.hpp"
 
@@ -11,10 +13,13 @@ class SharedTarget {
  public:
   struct Told {
     controller::BusTarget target{};
-    Instant at{};  ///< when the cue thread said so
+    Instant at{};            ///< when the cue thread said so
+    std::uint32_t plan = 0;  ///< whose switches it means: 0 is the first of the run, then one more for each taken
   };
 
-  void publish(const controller::BusTarget& target, Instant at) noexcept { told_.write({target, at}); }
+  void publish(const controller::BusTarget& target, Instant at, std::uint32_t plan = 0) noexcept {
+    told_.write({target, at, plan});
+  }
   [[nodiscard]] Told read() const noexcept { return told_.read(); }
 
  private:

@@ -26,6 +26,8 @@ class Orders {
   /// Borrows show and plan.
   Orders(const Show& show, const Plan& plan);
   [[nodiscard]] Result<Order> from(std::string_view line) const;
+  /// Show and plan have other contents.
+  void plan_taken() { plays_ = controller::cue_plays(show_, plan_); }
   [[nodiscard]] const std::vector<controller::CuePlay>& plays() const { return plays_; }
 
  private:

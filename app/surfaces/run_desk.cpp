@@ -144,6 +144,11 @@ void RunDesk::tell_switched_off(std::uint64_t inputs) {
   }
 }
 
+void RunDesk::plan_taken() {
+  orders_.plan_taken();
+  for (Surface* surface : surfaces_) surface->plan_taken();
+}
+
 DeskWishes RunDesk::look(const DeskView& view) {
   now_ = view.show.at;
   DeskView seen = view;

@@ -45,6 +45,8 @@ class RunDesk {
   void tell(RunEvent event);
   /// What stands against walking, until it is taken back. @param bars bits of controller/bars.hpp
   void bar(controller::Bars bars, bool there) { wishes_.bars = there ? wishes_.bars | bars : wishes_.bars & ~bars; }
+  /// Show and plan have other contents: told to all surfaces.
+  void plan_taken();
   [[nodiscard]] std::string help() const;
   [[nodiscard]] const Orders& orders() const { return orders_; }
 

@@ -48,6 +48,9 @@ class Surface {
   /// Asked some fifty times a second: says what is wanted to `desk`, takes what the view shows. Must not block.
   virtual void look(const DeskView& view, RunDesk& desk) = 0;
   virtual void told(const RunEvent& /*event*/) {}
+  /// Another plan plays from now on: show, plan and rig that were borrowed have other contents, at the same address,
+  /// and so have the desk's cues. Views after this are of that plan. Who reads them in another thread keeps copies.
+  virtual void plan_taken() {}
   /// Becomes readable when `look` has something to do; -1: there is none.
   [[nodiscard]] virtual int file() const { return -1; }
   /// Whether an order may still come from here. A run whose show is over ends when nobody can say anything any more.

@@ -75,7 +75,7 @@ class Floor {
     out.cpu = cpu_;
     target_.next = 1;
     for (const Instant end = clock_.now() + seconds(60); clock_.now() < end;) step(end);
-    for (const auto& loop : loops_) out.notice = std::max(out.notice, loop->notice(1));
+    for (const auto& loop : loops_) out.notice = std::max(out.notice, loop->notice(loop->schedule(), 1));
     const Instant go = clock_.now();
     target_.next_at = go + out.notice;
     while (changed_.size() < rig_.nodes.size() && clock_.now() < go + seconds(60)) {

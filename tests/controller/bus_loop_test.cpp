@@ -485,7 +485,8 @@ TEST(CanopenBus, NothingOfTheNextSwitchIsPreloadedWhileTheShowWaits) {
   bench.stands_at = 0;
   bench.run_until(kStart + milliseconds(900));
   for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(bench.driver.node(n).pending_sequence, 0);
-  EXPECT_GE(bench.loop.notice(1), 4 * milliseconds(4) + milliseconds(1)) << "a GO has to be known that long before";
+  EXPECT_GE(bench.loop.notice(bench.schedule, 1), 4 * milliseconds(4) + milliseconds(1))
+      << "a GO has to be known that long before";
 }
 
 TEST(CanopenBus, WithTimeEveryPreloadIsSentTwice) {
@@ -544,6 +545,96 @@ TEST_P(AnyBus, AfterTheFaultsEveryLivingNodeIsRightWithinTwoRefreshRounds) {
     bench.run_until(bench.schedule.switches()[9].time + std::chrono::seconds(2));
     EXPECT_EQ(bench.wrong(6, 9), Nobody{}) << "seed " << seed;
   }
+}
+
+// ---- another schedule
+
+/// The same nodes, other looks: those of the table's upper half are new.
+CueSchedule other_schedule(std::size_t nodes, std::size_t switches, std::uint8_t plan_byte) {
+  CueSchedule schedule = schedule_of(
+      nodes, switches, [](std::size_t k, std::size_t n) { return static_cast<LookIndex>(1 + (3 * k + 2 * n) % 20); });
+  std::vector<Look> looks = schedule.looks();
+  std::vector<LookIndex> same(looks.size());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    same[i] = static_cast<LookIndex>(i);
+    if (i > 10) looks[i].colour.green = 200;
+  }
+  schedule.renumber(std::move(looks), same, plan_byte);
+  return schedule;
+}
+
+TEST_P(AnyBus, GoingOverToAnotherScheduleUploadsItsNewLooksAndLightsIt) {
+  Bench bench(schedule_of(4, 6, every_switch), 4, GetParam());
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(2000));
+  ASSERT_EQ(bench.wrong(4, 0), Nobody{});
+  const CueSchedule other = other_schedule(4, 8, 1);
+  const auto part = bench.loop.part_of(other, bench.schedule);
+  bench.driver.log.clear();
+  bench.loop.take(*part);
+  bench.run_until(kStart + milliseconds(4000));
+  ASSERT_EQ(&bench.loop.schedule(), &other);
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_TRUE(std::ranges::equal(bench.driver.node(n).showing, other.looks_of(0, NodeIndex::of(n)).first(kChannels)));
+  }
+  EXPECT_TRUE(bench.loop.settled());
+  EXPECT_TRUE(bench.driver.broken_rules.empty());
+  std::size_t fresh = 0;
+  for (const auto& operation : bench.driver.log) {
+    if (operation.kind == Kind::preload) break;
+    fresh += operation.kind == Kind::upload && operation.sequence > 10 ? 1 : 0;
+  }
+  EXPECT_EQ(fresh, 20U) << "new looks are uploaded, twice each, before a lamp shows one";
+}
+
+TEST_P(AnyBus, WhoShowsTheSameInTheOtherScheduleIsLeftAlone) {
+  const auto same = [](std::size_t, std::size_t n) { return static_cast<LookIndex>(1 + n); };
+  Bench bench(schedule_of(4, 1, same), 4, GetParam());
+  bench.run_until(kStart + milliseconds(2000));
+  ASSERT_TRUE(bench.loop.settled());
+  const CueSchedule other = schedule_of(4, 1, same);
+  const auto part = bench.loop.part_of(other, bench.schedule);
+  bench.driver.log.clear();
+  bench.loop.take(*part);
+  (void)bench.loop.step(bench.now, bench.target());
+  EXPECT_EQ(&bench.loop.schedule(), &other);
+  EXPECT_TRUE(bench.loop.settled());
+  bench.run_until(kStart + milliseconds(3000));
+  EXPECT_EQ(bench.driver.count(Kind::preload), 0U);
+  EXPECT_EQ(bench.wrong(4, 0), Nobody{});
+}
+
+TEST(BusLoop, WhateverWasUnderWayNoLampIsLitByAPlanThatHasGone) {
+  EXPECT_TRUE(rc::check("every lamp is of its schedule", [] {
+    const bool canopen = *rc::gen::arbitrary<bool>();
+    Bench bench(schedule_of(5, 12, every_switch), 5, canopen);
+    Rng rng(*rc::gen::arbitrary<std::uint32_t>());
+    bench.driver.lost = [&](Kind, NodeIndex, Instant) { return rng.below(20) == 0; };
+    bench.driver.answer_lost = [&](NodeIndex, Instant) { return rng.below(20) == 0; };
+    std::vector<std::unique_ptr<CueSchedule>> schedules;
+    std::vector<std::unique_ptr<BusLoop::Part>> parts;
+    const CueSchedule* now = &bench.schedule;
+    // What may be shown: a row of the schedule that plays, from the one that was lit when it was taken on.
+    for (int change = 0; change < 4; ++change) {
+      bench.run_until(bench.now + microseconds(*rc::gen::inRange(0, 1'500'000)));
+      bench.stands_at = bench.stands_at ? std::optional<std::size_t>() : bench.target().current;
+      const auto byte = static_cast<std::uint8_t>(change + 1);
+      schedules.push_back(std::make_unique<CueSchedule>(other_schedule(5, 12, byte)));
+      parts.push_back(bench.loop.part_of(*schedules.back(), *now));
+      now = schedules.back().get();
+      bench.loop.take(*parts.back());
+    }
+    bench.driver.lost = [](Kind, NodeIndex, Instant) { return false; };
+    bench.driver.answer_lost = [](NodeIndex, Instant) { return false; };
+    bench.stands_at = bench.target().current;
+    bench.run_until(bench.now + milliseconds(6000));
+    RC_ASSERT(&bench.loop.schedule() == now);
+    for (std::size_t n = 0; n < 5; ++n) {
+      const auto looks = now->looks_of(*bench.stands_at, NodeIndex::of(n)).first(kChannels);
+      RC_ASSERT(std::ranges::equal(bench.driver.node(n).showing, looks));
+    }
+    RC_ASSERT(bench.loop.settled());
+  }));
 }
 
 }  // namespace

@@ -298,6 +298,87 @@ TEST(Rehearsal, WithoutAWayTheOperatorSaysThatPeopleArePlaced) {
   EXPECT_EQ(bench.lit(), lit_at(*bench.schedule, instant_at(8), true));
 }
 
+TEST(Rehearsal, APlanThatPutsPeopleElsewhereBeginsWithTheWayToItAndNothingElse) {
+  Bench bench(manual(), 4);
+  // The plan before left people where they stand in this one at 4 s; the show goes on at 8 s.
+  const auto from = cells_at(bench.small.plan, instant_at(4));
+  const auto to = cells_at(bench.small.plan, instant_at(8));
+  std::vector<std::vector<Mark>> tracks;
+  for (std::size_t p = 0; p < from.size(); ++p) {
+    tracks.push_back({{kStart, from[p]}, {instant_at(2), from[p]}, {instant_at(5), to[p]}});
+  }
+  Plan way = tests::plan_of(bench.small.plan.stage.grid, std::move(tracks));
+  way.sections = {{"here", kStart, kStart, 100, {}, {}, {}}, {"there", instant_at(5), instant_at(5), 100, {}, {}, {}}};
+  way.valid = true;
+  const std::size_t first =
+      bench.schedule->add(build_reset(bench.small.show, way, bench.small.rig, *bench.schedule, true)).value();
+  bench.rehearsal->begin_elsewhere(instant_at(8), first, bench.schedule->reset_of(first));
+  bench.run_for(60);
+  EXPECT_EQ(bench.lit(), first) << "lamps show people where they stand";
+  EXPECT_EQ(bench.position(), instant_at(8));
+  for (const Kind kind : {Kind::jump, Kind::back, Kind::step, Kind::cancel}) {
+    EXPECT_EQ(bench.tell(kind, instant_at(0)), Outcome::reset_first);
+  }
+  EXPECT_EQ(bench.tell(Kind::loop, instant_at(8), instant_at(12)), Outcome::reset_first);
+  EXPECT_EQ(bench.lit(), first);
+  EXPECT_FALSE(bench.rehearsal->may_change_plan());
+  EXPECT_EQ(bench.go(), Outcome::reset_started);
+  EXPECT_EQ(bench.lit(), first);
+  bench.run_for(4);
+  EXPECT_GT(bench.lit(), first) << "they walk";
+  bench.run_for(2);
+  EXPECT_EQ(bench.rehearsal->phase(), Phase::stands);
+  EXPECT_EQ(bench.lit(), lit_at(*bench.schedule, instant_at(8), true));
+  EXPECT_TRUE(bench.rehearsal->may_change_plan());
+  EXPECT_EQ(bench.go(), Outcome::goes_on);
+}
+
+TEST(Rehearsal, PlacedEndsTheWayToANewPlanToo) {
+  Bench bench;
+  ResetMove move;
+  move.switches.resize(2);
+  move.table.resize(2 * bench.small.rig.nodes.size() * kChannelsPerNode);
+  const std::size_t first = bench.schedule->add(std::move(move)).value();
+  bench.rehearsal->begin_elsewhere(instant_at(4), first, bench.schedule->reset_of(first));
+  EXPECT_EQ(bench.lit(), first);
+  EXPECT_EQ(bench.tell(Kind::placed), Outcome::done);
+  EXPECT_EQ(bench.lit(), lit_at(*bench.schedule, instant_at(4), true));
+  EXPECT_EQ(bench.go(), Outcome::cue_started);
+}
+
+TEST(Rehearsal, ThePlanMayChangeWhereEverybodyStandsAndNothingRuns) {
+  Bench bench;
+  EXPECT_TRUE(bench.rehearsal->may_change_plan());
+  bench.go();
+  bench.run_for(1);
+  EXPECT_FALSE(bench.rehearsal->may_change_plan()) << "the cue runs";
+  bench.tell(Kind::hold);
+  EXPECT_FALSE(bench.rehearsal->may_change_plan()) << "people are in the middle of a walk";
+  bench.tell(Kind::jump, instant_at(0));
+  EXPECT_FALSE(bench.rehearsal->may_change_plan()) << "they are to go elsewhere";
+  bench.tell(Kind::cancel);
+  bench.go();
+  bench.run_for(10);
+  EXPECT_EQ(bench.position(), instant_at(4));
+  EXPECT_TRUE(bench.rehearsal->may_change_plan());
+}
+
+TEST(Rehearsal, TempoAndTheGoGuardGoOnInANewPlan) {
+  Bench before;
+  before.tell(Kind::tempo, {}, {}, 80);
+  EXPECT_EQ(before.go(), Outcome::cue_started);
+  before.run_for(20);
+  Bench now;
+  now.rehearsal->begin_at(instant_at(8));
+  now.clock.advance_to(before.clock.now());
+  now.rehearsal->carry_on(*before.rehearsal, now.clock.now());
+  EXPECT_EQ(now.engine->percent(), 80);
+  const Instant at = now.clock.now();
+  EXPECT_EQ(before.tell(Kind::go), Outcome::cue_started);
+  now.rehearsal->carry_on(*before.rehearsal, at);
+  EXPECT_EQ(now.tell(Kind::go), Outcome::too_soon) << "for the guard it is the same desk";
+}
+
 TEST(Rehearsal, TheMoveOfAJumpThatWasReplacedIsNotTaken) {
   Bench bench;
   bench.tell(Kind::jump, instant_at(8));

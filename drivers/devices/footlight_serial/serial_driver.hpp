@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -36,6 +37,7 @@ class SerialDriver final : public Driver {
   [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override { return !line_taken_; }
 
+  void take_plan(std::uint8_t plan_byte) override { plan_byte_.store(plan_byte); }
   SendStatus start(Instant now) override;
   SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                      Instant now) override;
@@ -87,7 +89,7 @@ class SerialDriver final : public Driver {
                    EventSink& events);
 
   ByteStream& port_;
-  std::uint8_t plan_byte_;
+  std::atomic<std::uint8_t> plan_byte_;                         ///< budgets are asked by other threads, too
   std::map<std::uint8_t, std::optional<std::uint16_t>> boots_;  ///< last known, by address
   footlight_serial::FrameReceiver receiver_;
   std::optional<Awaited> awaited_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -59,6 +60,7 @@ class ModbusDriver final : public Driver {
   [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override;
 
+  void take_plan(std::uint8_t plan_byte) override { plan_byte_.store(plan_byte); }
   SendStatus start(Instant now) override;
   SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                      Instant now) override;
@@ -132,7 +134,7 @@ class ModbusDriver final : public Driver {
   ModbusPort& port_;
   ModbusProfile profile_;
   std::vector<NodeAddress> nodes_;
-  std::uint8_t plan_byte_;
+  std::atomic<std::uint8_t> plan_byte_;  ///< budgets are asked by other threads, too
   std::map<NodeIndex, Known> known_;
   std::map<NodeIndex, Kept> kept_;        ///< profiles without a latch
   std::map<NodeIndex, Written> pending_;  ///< preloaded, not latched: values read back

@@ -166,6 +166,99 @@ TEST_F(LiveRunTest, AfterAHoldAndTheWayBackEveryMarkerShowsTheOpeningAgain) {
   EXPECT_GE(lit, 12U) << "the opening";
 }
 
+/// Takes another plan as soon as the show stands after the roll call, with people elsewhere: one after the other.
+class TwoChanges : public PlanChanges {
+ public:
+  TwoChanges(SmallShow& small, std::vector<Plan> plans) : small_(small), plans_(std::move(plans)) {}
+  void begin(const ShowOnWires& wires) override {
+    wires_ = &wires;
+    before_ = &*wires.schedule;
+  }
+  std::unique_ptr<ComingPlan> wanted(const ShowState& state) override {
+    if (!allowed || taken_ == plans_.size() || state.phase != controller::Rehearsal::Phase::stands ||
+        state.reset.state != controller::Rehearsal::ResetState::none) {
+      return nullptr;
+    }
+    const Plan& plan = plans_[taken_];
+    auto made = put_beside(small_.show, plan, small_.rig, *wires_, *before_);
+    EXPECT_TRUE(made) << made.error().message;
+    auto coming =
+        std::make_unique<ComingPlan>(ComingPlan{std::move(made).value(), small_.show.tempo, controller::Stands(plan)});
+    coming->from = state.position;
+    coming->to = instant_at(2);
+    const auto cells = controller::cells_at(small_.plan, state.position);
+    const auto goals = controller::cells_at(plan, coming->to);
+    std::vector<std::vector<Mark>> tracks;
+    for (std::size_t p = 0; p < cells.size(); ++p) {
+      tracks.push_back({{kStart, cells[p]}, {instant_at(0.2), cells[p]}, {instant_at(0.5), goals[p]}});
+    }
+    Plan way = tests::plan_of(plan.stage.grid, std::move(tracks));
+    way.sections = {{"start", kStart, kStart, 9, {}, {}, {}}, {"places", instant_at(1), instant_at(1), 9, {}, {}, {}}};
+    way.valid = true;
+    coming->way = coming->wires->schedule->add(
+        controller::build_reset(small_.show, way, small_.rig, *coming->wires->schedule, true));
+    return coming;
+  }
+  void taken(const ShowOnWires& plays) override {
+    before_ = &*plays.schedule;
+    small_.plan = plans_[taken_++];
+  }
+  void not_taken() override { ADD_FAILURE(); }
+
+  bool allowed = false;
+  [[nodiscard]] std::size_t count() const { return taken_; }
+
+ private:
+  SmallShow& small_;
+  std::vector<Plan> plans_;
+  const ShowOnWires* wires_ = nullptr;
+  const controller::CueSchedule* before_ = nullptr;
+  std::size_t taken_ = 0;
+};
+
+TEST_F(LiveRunTest, OtherPlansAreTakenWhileItRunsAndEveryMarkerShowsTheLastOneInTheEnd) {
+  const auto ports = open();
+  std::vector<Plan> plans{tests::random_show(8, 6, 12, 1, 2, 6).plan, tests::random_show(8, 6, 12, 1, 2, 7).plan};
+  TwoChanges changes(small_, plans);
+  LiveOptions options;
+  options.rehearsal = {0, milliseconds(1)};
+  options.changes = &changes;
+  std::vector<std::string> moments;
+  options.moment = [&](const std::string& line) { moments.push_back(line); };
+  std::size_t confirmed = 0;
+  // The desk confirms both ways and plays the second plan to its end.
+  options.desk = [&](const DeskView& view) {
+    changes.allowed = view.roll_called;
+    DeskWishes wishes;
+    const bool ready = view.show.reset.state == controller::Rehearsal::ResetState::ready;
+    if (ready && confirmed < changes.count()) {
+      ++confirmed;
+      wishes.commands.emplace_back();
+    }
+    const bool there = confirmed == 2 && view.show.phase == controller::Rehearsal::Phase::stands && !ready;
+    if (there && view.show.position == instant_at(2)) wishes.commands.emplace_back();
+    wishes.nobody = view.show.phase == controller::Rehearsal::Phase::finished;
+    return wishes;
+  };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(changes.count(), 2U);
+  EXPECT_EQ(report->unconfirmed, 0U);
+  EXPECT_EQ(report->deaf, 0U);
+  stop_serving();
+  std::size_t wrong = 0;
+  for (std::size_t n = 0; n < small_.rig.nodes.size(); ++n) {
+    for (std::size_t c = 0; c < small_.rig.nodes[n].channels.size(); ++c) {
+      const LookIndex shown = served_->rig().shown(NodeIndex::of(n), static_cast<int>(c));
+      wrong += shown == report->floor[n][c] ? 0 : 1;
+      const CellIndex cell = small_.rig.nodes[n].channels[c].cell;
+      const auto ends = controller::cells_at(plans[1], instant_at(4));
+      EXPECT_EQ(shown != kDark, std::ranges::find(ends, cell) != ends.end()) << n << ":" << c;
+    }
+  }
+  EXPECT_EQ(wrong, 0U);
+}
+
 TEST_F(LiveRunTest, APlanThatIsNotValidSendsNothing) {
   const auto ports = open();
   small_.plan.valid = false;
