@@ -10,17 +10,20 @@
 namespace footlight::controller {
 namespace {
 
+constexpr Duration::rep kMillion = 1'000'000;
+constexpr int kPpmAPercent = 10'000;
+
 /// Show time that passes in so much time of the clock, rounded down. Exact integers: the position reaches a switch in
 /// the very nanosecond in which the switch is due.
-Duration show_time_in(Duration clock, int percent) {
-  const Duration::rep whole = clock.count() / 100;
-  return Duration(whole * percent + (clock.count() - whole * 100) * percent / 100);
+Duration show_time_in(Duration clock, Duration::rep ppm) {
+  const Duration::rep whole = clock.count() / kMillion;
+  return Duration(whole * ppm + (clock.count() - whole * kMillion) * ppm / kMillion);
 }
 
 /// Clock time until so much show time has passed, rounded up: the inverse of the above.
-Duration clock_time_for(Duration show, int percent) {
-  const Duration::rep whole = show.count() / percent;
-  return Duration(whole * 100 + ((show.count() - whole * percent) * 100 + percent - 1) / percent);
+Duration clock_time_for(Duration show, Duration::rep ppm) {
+  const Duration::rep whole = show.count() / ppm;
+  return Duration(whole * kMillion + ((show.count() - whole * ppm) * kMillion + ppm - 1) / ppm);
 }
 
 }  // namespace
@@ -61,6 +64,20 @@ GoAnswer CueEngine::go(Instant now, Duration lead) noexcept {
   begin(next_cue_, now + std::max(plays_[next_cue_].cue.pre_wait + lead, notices_[next_cue_]));
   step(now);
   return GoAnswer::started;
+}
+
+GoAnswer CueEngine::start(Instant now, Instant at) noexcept {
+  step(now);
+  if (active_) return GoAnswer::running;
+  if (next_cue_ == plays_.size()) return GoAnswer::nothing_left;
+  begin(next_cue_, std::max(at, now + notices_[next_cue_]));
+  step(now);
+  return GoAnswer::started;
+}
+
+void CueEngine::move_start(Instant now, Instant at) noexcept {
+  step(now);
+  if (active_ && !frozen_ && now < anchor_at_) anchor_at_ = std::max(at, now);
 }
 
 void CueEngine::begin(std::size_t cue, Instant at) noexcept {
@@ -118,9 +135,31 @@ void CueEngine::set_tempo(Instant now, int percent) noexcept {
   step(now);
   const Instant here = position();
   wanted_percent_ = std::clamp(percent, kSlowest_percent, kFastest_percent);
-  if (!active_ || frozen_ || now <= anchor_at_) return;
-  anchor_at_ = now;
+  anchor_here(here);
+}
+
+void CueEngine::lead(Instant now, std::optional<int> ppm) noexcept {
+  if (ppm == led_ppm_) return;
+  step(now);
+  const Instant here = position();
+  led_ppm_ = ppm;
+  anchor_here(here);
+}
+
+/// What the speed was until now stays as it was.
+void CueEngine::anchor_here(Instant here) noexcept {
+  if (!active_ || frozen_ || now_ <= anchor_at_) return;
+  anchor_at_ = now_;
   anchor_ = here;
+}
+
+void CueEngine::make_up(Instant now, Duration ahead) noexcept {
+  step(now);
+  if (!active_ || frozen_ || now < anchor_at_) return;
+  // Whatever it passes on the way is behind it by the step that follows: only where it gets to is shown.
+  anchor_ = std::min(position() + ahead, plays_[*active_].to);
+  anchor_at_ = now;
+  step(now);
 }
 
 void CueEngine::step(Instant now) noexcept {
@@ -132,7 +171,7 @@ void CueEngine::step(Instant now) noexcept {
     const bool stops = stop_ && *stop_ < plays_[*active_].to;
     if (stops && clock_at(*stop_) <= now) return freeze_at(*stop_, true);
     if (now < ends_at()) return;
-    const std::optional<Duration> gap = plays_[*active_].gap_after;
+    const std::optional<Duration> gap = gap_after(*active_);
     if (!gap || next_cue_ == plays_.size() || (stop_ && *stop_ == plays_[*active_].to)) {
       active_.reset();
       stop_.reset();
@@ -144,7 +183,7 @@ void CueEngine::step(Instant now) noexcept {
 
 Instant CueEngine::clock_at(Instant position) const noexcept {
   if (!active_ || frozen_) return kNever;
-  return anchor_at_ + clock_time_for(std::max(Duration{}, position - anchor_), percent_of(*active_));
+  return anchor_at_ + clock_time_for(std::max(Duration{}, position - anchor_), speed_ppm(*active_));
 }
 
 Instant CueEngine::ends_at() const noexcept { return clock_at(plays_[*active_].to); }
@@ -154,9 +193,9 @@ Instant CueEngine::due(std::size_t k) const noexcept {
   const Switch& due = schedule_.switches()[k];
   if (!due.cue || (stop_ && (due.time > *stop_ || (due.time == *stop_ && !due.settled)))) return kNever;
   if (*due.cue == *active_) return clock_at(due.time);
-  const std::optional<Duration> gap = plays_[*active_].gap_after;
+  const std::optional<Duration> gap = gap_after(*active_);
   if (*due.cue != *active_ + 1 || !gap) return kNever;
-  return ends_at() + *gap + clock_time_for(due.time - plays_[*due.cue].from, percent_of(*due.cue));
+  return ends_at() + *gap + clock_time_for(due.time - plays_[*due.cue].from, speed_ppm(*due.cue));
 }
 
 BusTarget CueEngine::target() const noexcept {
@@ -165,7 +204,7 @@ BusTarget CueEngine::target() const noexcept {
   target.next = std::min(lit_ + 1, schedule_.switches().size() - 1);
   target.next_at = target.next == lit_ ? kNever : due(target.next);
   target.show_time = position().time_since_epoch();
-  target.rate = percent() / 100.0;
+  target.rate = static_cast<double>(speed_ppm(cue_of_tempo())) / kMillion;
   return target;
 }
 
@@ -180,18 +219,31 @@ Instant CueEngine::next_event() const noexcept {
 Instant CueEngine::position() const noexcept {
   if (!active_) return next_cue_ == 0 ? plays_.front().from : plays_[next_cue_ - 1].to;
   if (frozen_ || now_ <= anchor_at_) return anchor_;
-  return std::min(anchor_ + show_time_in(now_ - anchor_at_, percent()), plays_[*active_].to);
+  return std::min(anchor_ + show_time_in(now_ - anchor_at_, speed_ppm(*active_)), plays_[*active_].to);
 }
 
 bool CueEngine::waits() const noexcept { return !active_ || before_; }
 
 int CueEngine::percent_of(std::size_t cue) const noexcept { return std::min(wanted_percent_, limits_[cue]); }
 
-int CueEngine::percent() const noexcept { return percent_of(active_.value_or(std::min(next_cue_, plays_.size() - 1))); }
-
-int CueEngine::limit_percent() const noexcept {
-  return limits_[active_.value_or(std::min(next_cue_, plays_.size() - 1))];
+Duration::rep CueEngine::speed_ppm(std::size_t cue) const noexcept {
+  if (!led_ppm_) return Duration::rep{kPpmAPercent} * percent_of(cue);
+  return std::clamp(*led_ppm_, kPpmAPercent * kSlowest_percent, kPpmAPercent * limits_[cue]);
 }
+
+std::optional<Duration> CueEngine::gap_after(std::size_t cue) const noexcept {
+  return led_ppm_ ? Duration{} : plays_[cue].gap_after;
+}
+
+std::size_t CueEngine::cue_of_tempo() const noexcept {
+  return active_.value_or(std::min(next_cue_, plays_.size() - 1));
+}
+
+int CueEngine::percent() const noexcept {
+  return static_cast<int>((speed_ppm(cue_of_tempo()) + kPpmAPercent / 2) / kPpmAPercent);
+}
+
+int CueEngine::limit_percent() const noexcept { return limits_[cue_of_tempo()]; }
 
 CueState CueEngine::state(std::size_t cue) const noexcept {
   if (active_ && cue == *active_) {

@@ -43,6 +43,10 @@ class CueEngine {
 
   /// @param lead the cue starts no sooner: a count-in
   GoAnswer go(Instant now, Duration lead = {}) noexcept;
+  /// The standby cue begins at `at`, or as soon as the buses can: its pre-wait is the source of time's affair.
+  GoAnswer start(Instant now, Instant at) noexcept;
+  /// What waits to run, or to go on, does so at `at` instead. @param at far enough from now for the buses
+  void move_start(Instant now, Instant at) noexcept;
   /// Lets everything up to and including `now` happen. `now` never goes back.
   void step(Instant now) noexcept;
 
@@ -59,6 +63,11 @@ class CueEngine {
   void place(Instant position) noexcept;
   /// From now on. @param percent wanted; held at the active cue's limit  @param now not before the last step
   void set_tempo(Instant now, int percent) noexcept;
+  /// A source of time leads: the position goes at its speed, never above the cue's limit, and each cue follows the one
+  /// before without a wait. @param ppm parts of a million of the written tempo; nothing: nobody leads
+  void lead(Instant now, std::optional<int> ppm) noexcept;
+  /// The running cue goes so far ahead in one step, at most to its end. @param ahead not negative
+  void make_up(Instant now, Duration ahead) noexcept;
   /// @param percent fastest for each cue, for a tempo above that is asked for; at least 25 each
   void set_limits(std::vector<int> percent);
 
@@ -87,6 +96,8 @@ class CueEngine {
   [[nodiscard]] int wanted_percent() const noexcept { return wanted_percent_; }
   /// Fastest of the active cue, or of the standby.
   [[nodiscard]] int limit_percent() const noexcept;
+  /// How long the show stands after a cue; nothing: until GO. A source of time that leads waits nowhere.
+  [[nodiscard]] std::optional<Duration> gap_after(std::size_t cue) const noexcept;
   [[nodiscard]] const std::vector<CuePlay>& plays() const noexcept { return plays_; }
   [[nodiscard]] const CueSchedule& schedule() const noexcept { return schedule_; }
 
@@ -96,13 +107,19 @@ class CueEngine {
   [[nodiscard]] Instant ends_at() const noexcept;
   /// Clock time at which switch `k` is due; kNever when that is not known yet.
   [[nodiscard]] Instant due(std::size_t k) const noexcept;
+  void anchor_here(Instant here) noexcept;
   [[nodiscard]] int percent_of(std::size_t cue) const noexcept;
+  /// Speed of the position while a cue runs.
+  [[nodiscard]] Duration::rep speed_ppm(std::size_t cue) const noexcept;
+  /// The active one, or the standby.
+  [[nodiscard]] std::size_t cue_of_tempo() const noexcept;
 
   const CueSchedule& schedule_;
   std::vector<CuePlay> plays_;
   std::vector<Duration> notices_;
   std::vector<int> limits_;  ///< of each cue, percent
   int wanted_percent_ = 100;
+  std::optional<int> led_ppm_;
   Instant now_;
   std::optional<std::size_t> active_;
   // Where the active cue is: at `anchor_at_` by the clock it is, or will be, at `anchor_` of the show.

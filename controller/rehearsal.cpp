@@ -24,7 +24,7 @@ std::optional<Outcome> refusal(Bars bars) {
 }  // namespace
 
 std::string_view to_text(Outcome outcome) {
-  constexpr std::array<std::string_view, 23> kTexts{
+  constexpr std::array<std::string_view, 24> kTexts{
       "done",
       "the cue starts",
       "the show goes on",
@@ -48,6 +48,7 @@ std::string_view to_text(Outcome outcome) {
       "emergency hold: when people are safe and the button is out, acknowledge it (ok)",
       "the show is not ready",
       "lost: too many commands at once",
+      "no source of time is followed: it has to be locked, and far enough before the end of the show",
   };
   return kTexts.at(static_cast<std::size_t>(outcome));
 }
@@ -190,6 +191,11 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
       case Command::Kind::acknowledge:
         guard_.acknowledge();
         return Outcome::done;
+      case Command::Kind::time_fix:
+      case Command::Kind::follow:
+      case Command::Kind::unfollow:
+      case Command::Kind::join:
+        return Outcome::no_source;  // they are the chase's, where there is one
     }
     return Outcome::done;
   };
@@ -230,6 +236,39 @@ Outcome Rehearsal::go_on(Instant now) noexcept {
     return reset_.state == ResetState::none ? Outcome::goes_on : Outcome::walks_on;
   }
   return engine_.go(now, count_in()) == GoAnswer::started ? Outcome::cue_started : Outcome::nothing_left;
+}
+
+Outcome Rehearsal::start(Instant now, Instant at) noexcept {
+  step(now);
+  if (resets()) return Outcome::reset_runs;
+  if (runs()) return Outcome::cue_runs;
+  if (reset_.state != ResetState::none) return Outcome::being_planned;
+  if (const auto against = refusal(barred())) return *against;
+  Outcome outcome = Outcome::goes_on;
+  if (engine_.frozen()) {
+    const BusTarget next = engine_.target();
+    engine_.resume(now, std::max(at, now + notice_(next.current, next.next)));
+  } else {
+    outcome = engine_.start(now, at) == GoAnswer::started ? Outcome::cue_started : Outcome::nothing_left;
+  }
+  aim();
+  step(now);
+  return outcome;
+}
+
+void Rehearsal::lead(Instant now, std::optional<int> ppm) noexcept {
+  engine_.lead(now, ppm);
+  aim();  // cues may follow by themselves that did not
+}
+
+void Rehearsal::move_start(Instant now, Instant at) noexcept {
+  engine_.move_start(now, at);
+  step(now);
+}
+
+void Rehearsal::make_up(Instant now, Duration ahead) noexcept {
+  engine_.make_up(now, ahead);
+  step(now);
 }
 
 Outcome Rehearsal::hold(Instant now) noexcept {
@@ -374,7 +413,7 @@ void Rehearsal::aim() noexcept {
   if (reset_.state != ResetState::none) consider(reset_.from);
   // A cue that would follow by itself and may not.
   const auto& plays = engine_.plays();
-  for (std::size_t c = *engine_.active(); c + 1 < plays.size() && plays[c].gap_after; ++c) {
+  for (std::size_t c = *engine_.active(); c + 1 < plays.size() && engine_.gap_after(c); ++c) {
     if ((bars_ & kHolding & bars_of(plays[c + 1].cue)) == 0) continue;
     consider(plays[c].to);
     break;

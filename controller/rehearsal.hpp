@@ -32,12 +32,17 @@ struct Command {
     placed,            ///< people stand where they must be, by the operator's word: no reset move is needed
     cancel,            ///< the jump
     acknowledge,       ///< inputs that were switched off
+    time_fix,          ///< the source of time is at `position` at clock time `at` (`Chase`)
+    follow,            ///< the source of time, again
+    unfollow,          ///< the show goes by its own clock
+    join,              ///< asks for the way to where people next stand after the source of time
   };
   Kind kind = Kind::go;
   GoSource source = GoSource::lines;
   std::uint8_t input = 0;  ///< which one presses GO, for the guard
   Instant position{};
   Instant until{};
+  Instant at{};  ///< by the clock
   int percent = 100;
   // Of a reset move.
   std::uint32_t reset = 0;          ///< as `Rehearsal::Reset::id`
@@ -70,7 +75,8 @@ enum class Outcome : std::uint8_t {
   hold_pressed,  ///< a hold button
   emergency_hold,
   not_ready,
-  lost,  ///< it never reached the rehearsal: there were too many
+  lost,       ///< it never reached the rehearsal: there were too many
+  no_source,  ///< nothing that makes sense comes from a source of time
 };
 /// For whoever pressed: "the cue runs".
 [[nodiscard]] std::string_view to_text(Outcome outcome);
@@ -128,6 +134,14 @@ class Rehearsal {
   /// O(log switches) and one `notice`.
   Outcome apply(const Command& command, Instant now) noexcept;
 
+  /// A source of time begins or goes on with what stands, at clock time `at` or as soon as the buses can: no guard, no
+  /// count-in but the time until then.
+  Outcome start(Instant now, Instant at) noexcept;
+  /// As `CueEngine::move_start`, `lead` and `make_up`.
+  void move_start(Instant now, Instant at) noexcept;
+  void lead(Instant now, std::optional<int> ppm) noexcept;
+  void make_up(Instant now, Duration ahead) noexcept;
+
   /// As of the last step or command.
   [[nodiscard]] BusTarget target() const noexcept;
   /// Clock time of the next thing that happens by itself; kNever while the show waits.
@@ -143,6 +157,7 @@ class Rehearsal {
   /// Bit i: input i of the GO guard is switched off.
   [[nodiscard]] std::uint64_t inputs_off() const noexcept { return guard_.off(); }
   [[nodiscard]] const CueEngine& engine() const noexcept { return engine_; }
+  [[nodiscard]] const Stands& stands() const noexcept { return stands_; }
 
  private:
   Outcome go(const Command& command, Instant now) noexcept;

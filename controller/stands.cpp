@@ -14,6 +14,7 @@ Stands::Stands(const Plan& plan) {
     for (const Walking& walk : walking_) {
       if (kept > 0 && walk.begins < walking_[kept - 1].ends) {
         walking_[kept - 1].ends = std::max(walking_[kept - 1].ends, walk.ends);
+        walking_[kept - 1].shortest = std::min(walking_[kept - 1].shortest, walk.shortest);
       } else {
         walking_[kept++] = walk;
       }
@@ -22,7 +23,8 @@ Stands::Stands(const Plan& plan) {
   };
   for (const auto& track : plan.tracks) {
     for (std::size_t m = 0; m + 1 < track.size(); ++m) {
-      if (track[m].cell != track[m + 1].cell) walking_.push_back({track[m].time, track[m + 1].time});
+      if (track[m].cell == track[m + 1].cell) continue;
+      walking_.push_back({track[m].time, track[m + 1].time, track[m + 1].time - track[m].time});
     }
     if (walking_.size() > 4'000'000) merge();
   }
@@ -33,6 +35,12 @@ Instant Stands::from(Instant position, bool waits) const noexcept {
   const auto next = std::ranges::upper_bound(walking_, position, {}, &Walking::ends);
   if (next == walking_.end() || position < next->begins || (waits && position == next->begins)) return position;
   return next->ends;
+}
+
+std::optional<Stands::Rest> Stands::rest(Instant stand) const noexcept {
+  const auto next = std::ranges::lower_bound(walking_, stand, {}, &Walking::begins);
+  if (next == walking_.end()) return std::nullopt;
+  return Rest{next->begins - stand, next->shortest};
 }
 
 Instant Stands::until(Instant position) const noexcept {

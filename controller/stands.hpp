@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/plan.hpp"
@@ -17,6 +18,13 @@ class Stands {
   /// The first instant from `position` on at which nobody walks. @param waits nobody has begun the walk of that very
   /// instant
   [[nodiscard]] Instant from(Instant position, bool waits) const noexcept;
+  /// What comes after a stand.
+  struct Rest {
+    Duration stands{};         ///< nobody walks for so long
+    Duration shortest_walk{};  ///< of those that then begin before everybody stands again
+  };
+  /// Nothing: nobody walks any more. @param stand as `from` says
+  [[nodiscard]] std::optional<Rest> rest(Instant stand) const noexcept;
   /// The last one up to `position`; those who begin to walk there have not begun.
   [[nodiscard]] Instant until(Instant position) const noexcept;
 
@@ -24,6 +32,7 @@ class Stands {
   struct Walking {
     Instant begins;
     Instant ends;
+    Duration shortest;  ///< of the walks in it
   };
   std::vector<Walking> walking_;  ///< ascending; one may begin where the one before ends
 };

@@ -9,8 +9,8 @@
 
 namespace footlight::app {
 
-/// What is known of every node of the rig, from the threads of the buses to whoever looks. Each node is one word: nobody
-/// waits, nobody sees half of it. One writer for each node, any readers.
+/// What is known of every node of the rig, from the threads of the buses to whoever looks. Each node is one word:
+/// nobody waits, nobody sees half of it. One writer for each node, any readers.
 class NodeBoard {
  public:
   static constexpr std::uint32_t kNothingYet = 0xffff'ffff;

@@ -191,6 +191,44 @@ TEST(CueEngine, OneLongStepLightsWhatManyShortOnesLight) {
   }
 }
 
+TEST(CueEngine, LedByASourceOfTimeItGoesAtItsSpeedAndCuesFollowEachOther) {
+  Bench bench(manual());
+  bench.engine->set_limits({100, 200, 110});
+  bench.engine->lead(bench.clock.now(), 1'250'000);
+  EXPECT_EQ(bench.engine->start(bench.clock.now(), instant_at(1)), GoAnswer::started);
+  bench.run_until(instant_at(5));
+  EXPECT_EQ(bench.engine->position(), instant_at(4)) << "cue 1 is proved for 100 % and no more";
+  bench.run_until(instant_at(9));
+  EXPECT_EQ(bench.engine->position(), instant_at(9)) << "cue 2 has followed by itself, at 125 %";
+  bench.engine->lead(bench.clock.now(), std::nullopt);
+  EXPECT_EQ(bench.engine->position(), instant_at(9));
+  bench.run_until(instant_at(60));
+  EXPECT_EQ(bench.engine->position(), instant_at(12)) << "by itself it waits for GO again";
+}
+
+TEST(CueEngine, AStepAheadLightsWhereItGetsToAndDoesNotLeaveTheCue) {
+  Bench bench(manual());
+  EXPECT_EQ(bench.engine->go(bench.clock.now()), GoAnswer::started);
+  bench.run_until(instant_at(1.8));
+  bench.engine->make_up(bench.clock.now(), milliseconds(500));
+  EXPECT_EQ(bench.engine->position(), instant_at(2.3));
+  EXPECT_EQ(bench.lit().time, instant_at(2));
+  bench.engine->make_up(bench.clock.now(), seconds(9));
+  EXPECT_EQ(bench.engine->position(), instant_at(4));
+  bench.run_until(instant_at(60));
+  EXPECT_EQ(bench.engine->standby(), 1U);
+}
+
+TEST(CueEngine, AStartCanBeMovedUntilItHasHappened) {
+  Bench bench(manual());
+  EXPECT_EQ(bench.engine->start(bench.clock.now(), instant_at(3)), GoAnswer::started);
+  bench.engine->move_start(bench.clock.now(), instant_at(2));
+  EXPECT_EQ(bench.engine->goes_at(), instant_at(2));
+  bench.run_until(instant_at(2.5));
+  bench.engine->move_start(bench.clock.now(), instant_at(9));
+  EXPECT_EQ(bench.engine->position(), instant_at(0.5));
+}
+
 TEST(CueEngine, NamesItsStates) {
   EXPECT_EQ(to_text(CueState::pre_wait), "pre-wait");
   EXPECT_EQ(to_text(CueState::done), "done");

@@ -39,6 +39,15 @@ TEST(Stands, AJumpIntoAWalkGoesToItsBeginning) {
   EXPECT_EQ(stands.until(instant_at(7.5)), instant_at(6));
 }
 
+TEST(Stands, ARestIsAsLongAsNobodyWalksAndKnowsTheShortestWalkBehindIt) {
+  const Stands stands(two_people());
+  EXPECT_EQ(stands.rest(instant_at(0))->stands, Duration{});
+  EXPECT_EQ(stands.rest(instant_at(0))->shortest_walk, seconds(1)) << "the other one walks from 1 to 2 s";
+  EXPECT_EQ(stands.rest(instant_at(4.5))->stands, seconds(1.5));
+  EXPECT_EQ(stands.rest(instant_at(4.5))->shortest_walk, seconds(0.5));
+  EXPECT_FALSE(stands.rest(instant_at(8)));
+}
+
 TEST(Stands, CellsAreThoseOfEverybody) {
   const Plan plan = two_people();
   const auto cell = [&](int column, int row) { return plan.stage.grid.index({column, row}); };
