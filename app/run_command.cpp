@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commission/wipe_record.hpp"
+#include "app/console/console_options.hpp"
 #include "app/growing_file.hpp"
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
@@ -41,6 +42,7 @@ struct Options {
   bool status_lines = false;
   std::optional<double> count_in_counts;
   double go_guard_s = 1;
+  ConsoleOptions console;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -127,11 +129,15 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   RunDesk desk(show, planned.plan());
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
   desk.add(prompt);
+  auto console =
+      options.console.open(session, state_folder(options.state), show, planned.plan(), rig, desk, !options.go);
+  if (!console) return std::move(console).error();
   LiveOptions live;
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
   live.stop = session.stop();
   live.wire_log = wire_log;
+  if (*console) live.nodes = &(*console)->nodes();
   live.desk = [&](const DeskView& view) { return desk.look(view); };
   live.answered = [&](const Answer& answer) { desk.answered(answer); };
   live.wait = [&](Duration most) { desk.wait(most); };
@@ -144,6 +150,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   };
   live.limits = [&](const std::vector<controller::TempoLimit>& limits) {
     tell_limits(session, show, planned.plan(), limits);
+    if (*console) (*console)->take_limits(limits);
   };
   live.ready = [&](std::size_t unconfirmed) {
     session.note(unconfirmed == 0 ? "every node shows the opening"
@@ -229,6 +236,7 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
       ->capture_default_str();
   command->add_flag("--status-lines", options->status_lines,
                     "every line on stdout is a JSON document: state, answer, moment, reset, and the report at last");
+  options->console.add_options(*command);
   command->add_option("--wire-log", options->wire_log,
                       "write all that goes over the wires to this pcapng file, for Wireshark");
   command->add_option("--state", options->state, "folder for the last ten minutes of every wire and what the run said")

@@ -268,6 +268,13 @@ std::vector<bool> CueSchedule::numbers_shown() const {
   return shown;
 }
 
+bool CueSchedule::has(std::size_t k) const {
+  if (k < switches_.size()) return true;
+  const std::size_t slot = (k - switches_.size()) / kMostResetSwitches;
+  if (slot >= resets_->count.load(std::memory_order_acquire)) return false;
+  return (k - switches_.size()) % kMostResetSwitches < resets_->moves[slot]->switches.size();
+}
+
 const ResetMove& CueSchedule::reset_of(std::size_t k) const {
   const std::size_t slot = (k - switches_.size()) / kMostResetSwitches;
   FL_CHECK(slot < resets_->count.load(std::memory_order_acquire));

@@ -77,6 +77,8 @@ class CueSchedule {
   /// Takes a reset move, beside threads that read what is there already. One thread.
   /// @return the number of its first switch, for as long as the schedule lives; nothing when there are too many
   std::optional<std::size_t> add(ResetMove move);
+  /// Whether `k` is a switch of the show, or of a reset move that was added. Any thread.
+  [[nodiscard]] bool has(std::size_t k) const;
   /// The move that switch `k` belongs to, k >= switches().size(). Lives as long as the schedule. Any thread.
   [[nodiscard]] const ResetMove& reset_of(std::size_t k) const;
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }

@@ -172,12 +172,7 @@ void PromptDesk::show_state(const DeskView& view) {
     return session_.show_line(line);
   }
   if (!json_) return;
-  std::string now = fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(state.phase), state.reset.id,
-                                static_cast<int>(state.reset.state), state.active, state.standby, state.percent,
-                                state.target.current, state.holds_at_end, view.roll_called);
-  for (const std::string& against : view.against) now += " " + against;
-  for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
-  for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
+  const std::string now = StateText::changes(view);
   const bool runs = state.phase != Phase::stands && state.phase != Phase::finished;
   if (now == told_ && (!runs || (told_at_ != Instant::min() && state.at - told_at_ < kStateLines))) return;
   told_ = now;

@@ -132,6 +132,17 @@ std::string StateText::line(const DeskView& view) const {
                      against, buses(view.buses));
 }
 
+std::string StateText::changes(const DeskView& view) {
+  const ShowState& state = view.show;
+  std::string now = fmt::format("{} {} {} {} {} {} {} {} {} {}", static_cast<int>(state.phase), state.reset.id,
+                                static_cast<int>(state.reset.state), state.active, state.standby, state.percent,
+                                state.target.current, state.holds_at_end, state.loops, view.roll_called);
+  for (const std::string& against : view.against) now += " " + against;
+  for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
+  for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
+  return now;
+}
+
 std::string StateText::json(const DeskView& view) const {
   const ShowState& state = view.show;
   const double count = show_.tempo.count_at(state.position);

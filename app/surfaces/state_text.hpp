@@ -22,6 +22,9 @@ class StateText {
   [[nodiscard]] std::string line(const DeskView& view) const;
   /// One line of JSON: docs/live.md.
   [[nodiscard]] std::string json(const DeskView& view) const;
+  /// Another text whenever something has changed that is not the position alone.
+  [[nodiscard]] static std::string changes(const DeskView& view);
+  [[nodiscard]] const std::vector<controller::CuePlay>& plays() const { return plays_; }
   /// What a phase is called.
   [[nodiscard]] static std::string_view to_text(controller::Rehearsal::Phase phase);
 

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import unittest
 
+import console
 import devices
 import live
 import ola
@@ -90,6 +91,7 @@ Live = live.make_cases(Stage, footlight, lambda: PROGRAM)
 Devices = devices.make_cases(Stage, footlight)
 Ola = ola.make_cases(Stage)
 Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
+Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
 
 
 class Docs(Case):
