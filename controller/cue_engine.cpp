@@ -131,6 +131,16 @@ void CueEngine::place(Instant position) noexcept {
   lit_ = lit_at(schedule_, this->position(), true);
 }
 
+void CueEngine::take_up(std::size_t cue, Instant position, bool before, std::optional<Instant> runs_since) noexcept {
+  FL_CHECK(!active_ && cue < plays_.size());
+  begin(cue, runs_since.value_or(now_));
+  anchor_ = std::clamp(position, plays_[cue].from, plays_[cue].to);
+  before_ = before;
+  frozen_ = !runs_since;
+  now_ = std::min(now_, anchor_at_);  // what has happened since comes with the next step
+  lit_ = lit_at(schedule_, anchor_, before);
+}
+
 void CueEngine::set_tempo(Instant now, int percent) noexcept {
   step(now);
   const Instant here = position();

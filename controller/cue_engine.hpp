@@ -61,6 +61,10 @@ class CueEngine {
   void stop_at(std::optional<Instant> position) noexcept { stop_ = position; }
   /// The show stands at a position at which nobody walks. Nothing may run: `freeze` before.
   void place(Instant position) noexcept;
+  /// Before the first step, of a show that another program has led: this cue stands or runs at `position`, wherever
+  /// people are on their ways. @param before nobody has begun the walk of that instant  @param runs_since by the clock
+  /// it was there, or will be; none: it stands there
+  void take_up(std::size_t cue, Instant position, bool before, std::optional<Instant> runs_since) noexcept;
   /// From now on. @param percent wanted; held at the active cue's limit  @param now not before the last step
   void set_tempo(Instant now, int percent) noexcept;
   /// A source of time leads: the position goes at its speed, never above the cue's limit, and each cue follows the one
@@ -89,6 +93,7 @@ class CueEngine {
   [[nodiscard]] bool waits() const noexcept;
   /// Clock time at which the active cue begins or goes on; the past while it runs, kNever when none does.
   [[nodiscard]] Instant goes_at() const noexcept { return active_ && !frozen_ ? anchor_at_ : kNever; }
+  [[nodiscard]] int wanted_percent() const noexcept { return wanted_percent_; }
   [[nodiscard]] bool finished() const noexcept { return !active_ && next_cue_ == plays_.size(); }
   /// Of the active cue, or of the standby.
   [[nodiscard]] int percent() const noexcept;

@@ -92,6 +92,38 @@ bool Rehearsal::may_change_plan() const noexcept {
 
 // ---- time
 
+void Rehearsal::take_up(const Whereabouts& where, Instant now) noexcept {
+  engine_.set_tempo(std::min(now, where.runs_since.value_or(now)), where.percent);
+  if (where.cue && *where.cue < engine_.plays().size()) {
+    engine_.take_up(*where.cue, where.position, where.waits, where.runs_since);
+    hold_ = where.hold_at;
+    count_ = where.step_to;
+  } else {
+    begin_at(where.position);
+  }
+  loop_ = where.loop;
+  aim();
+  step(now);
+}
+
+Rehearsal::Whereabouts Rehearsal::whereabouts() const noexcept {
+  Whereabouts where;
+  where.percent = engine_.wanted_percent();
+  where.loop = loop_;
+  where.hold_at = hold_;
+  where.step_to = count_;
+  if (resets()) {
+    where.position = reset_.to;
+    return where;
+  }
+  where.position = engine_.position();
+  where.cue = engine_.active();
+  where.waits = engine_.waits();
+  if (!runs()) return where;
+  where.runs_since = std::max(now_, engine_.goes_at());
+  return where;
+}
+
 void Rehearsal::step(Instant now) noexcept {
   now_ = now;
   engine_.step(now);

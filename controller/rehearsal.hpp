@@ -110,6 +110,17 @@ class Rehearsal {
     double count_in_counts = 4;
     Duration least_between_gos = milliseconds(1000);
   };
+  /// Where a show was when another program led it last.
+  struct Whereabouts {
+    Instant position{};                   ///< show time
+    std::optional<std::size_t> cue{};     ///< that runs or stands there; none: the show waits between two cues
+    bool waits = true;                    ///< nobody has begun the walk of that very instant
+    std::optional<Instant> runs_since{};  ///< by the clock it was there, or will be; none: it stands
+    int percent = 100;                    ///< of the tempo, as it was asked for
+    std::optional<Instant> hold_at{};     ///< it will stand there: at the end of the set
+    std::optional<Instant> step_to{};     ///< or there: one count
+    std::optional<Loop> loop{};
+  };
   /// How long before a switch all buses have to know of it. @param from what is lit before
   using Notice = std::function<Duration(std::size_t from, std::size_t to)>;
 
@@ -118,6 +129,11 @@ class Rehearsal {
   /// The show stands here, held, also in the middle of a walk: a program that was started again, at the place where
   /// people were last. Before the first step. @param position clamped to the show
   void begin_at(Instant position) noexcept;
+  /// Before the first step: goes on, or stands, as if this had led the show all the time. Of a reset move that was
+  /// under way only its end is known. A position that is not on the show is held at its ends.
+  void take_up(const Whereabouts& where, Instant now) noexcept;
+  /// What another program has to know to take the show up, as of the last step.
+  [[nodiscard]] Whereabouts whereabouts() const noexcept;
   /// The show stands here, and people stand elsewhere: before anything else a reset move, which only waits for GO.
   /// @param first its first switch, which shows people where they stand (build_reset, `stand`)
   void begin_elsewhere(Instant position, std::size_t first, const ResetMove& move) noexcept;

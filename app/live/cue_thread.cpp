@@ -139,6 +139,7 @@ void CueThread::publish(Instant now) noexcept {
   state.at = now;
   state.barred = rehearsal_->barred();
   state.inputs_off = rehearsal_->inputs_off();
+  state.where = rehearsal_->whereabouts();
   state.target = target;
   state.plan = plan_;
   state_.write(state);

@@ -24,16 +24,17 @@ struct ShowState {
   bool loops = false;
   controller::Rehearsal::Loop loop{};
   bool holds_at_end = false;
-  int percent = 100;             ///< tempo
-  int limit_percent = 200;       ///< of this cue
-  int active = -1;               ///< cue that runs, is frozen or waits to run
-  int standby = -1;              ///< cue that the next GO starts
-  Instant position{};            ///< show time
-  Instant goes_at = kNever;      ///< clock time at which a count-in ends
-  Instant ends_at = kNever;      ///< clock time at which the active cue ends
-  Instant at{};                  ///< when this was so
-  controller::Bars barred = 0;   ///< what stands against whatever would come next, or holds what runs
-  std::uint64_t inputs_off = 0;  ///< bit i: input i of the GO guard is switched off
+  int percent = 100;                           ///< tempo
+  int limit_percent = 200;                     ///< of this cue
+  int active = -1;                             ///< cue that runs, is frozen or waits to run
+  int standby = -1;                            ///< cue that the next GO starts
+  Instant position{};                          ///< show time
+  Instant goes_at = kNever;                    ///< clock time at which a count-in ends
+  Instant ends_at = kNever;                    ///< clock time at which the active cue ends
+  Instant at{};                                ///< when this was so
+  controller::Bars barred = 0;                 ///< what stands against whatever would come next, or holds what runs
+  std::uint64_t inputs_off = 0;                ///< bit i: input i of the GO guard is switched off
+  controller::Rehearsal::Whereabouts where{};  ///< for a program that may have to take the show up
   controller::BusTarget target{};
   std::uint32_t plan = 0;  ///< whose cues and switches these are (SharedTarget)
 };

@@ -124,7 +124,13 @@ class LiveRun {
 Result<LiveReport> LiveRun::play() {
   const Instant began = clock_.now();
   BareTimer bare(clock_);
-  if (options_.position) plans_.rehearsal().begin_at(*options_.position);
+  controller::Rehearsal& rehearsal = plans_.rehearsal();
+  if (options_.take_up) {
+    rehearsal.take_up(options_.take_up(clock_.now()), clock_.now());
+  } else if (options_.position) {
+    rehearsal.begin_at(*options_.position);
+  }
+  told_ = rehearsal.target().current;  // what was lit before was told before
   cue_.start([this] {
     for (const auto& bus : threads_) bus->wake();
   });

@@ -112,6 +112,8 @@ struct LiveOptions {
   controller::Rehearsal::Settings rehearsal{};
   /// The show begins here and stands, held, also in the middle of a walk: a run that was cut off. None: at the top.
   std::optional<Instant> position;
+  /// Asked just before the first lamp, in whose clock it answers: the show goes on from here. None: `position`.
+  std::function<controller::Rehearsal::Whereabouts(Instant now)> take_up;
   /// The desk, asked again and again by the calling thread; none: the run ends with the show.
   std::function<DeskWishes(const DeskView&)> desk;
   /// What came of each command, in their order.

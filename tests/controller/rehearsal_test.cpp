@@ -711,6 +711,42 @@ TEST(RehearsalProperty, NothingRunsPastABarThatConcernsIt) {
   }));
 }
 
+TEST(RehearsalProperty, WhoeverTakesAShowUpLightsWhatItWouldHaveLit) {
+  EXPECT_TRUE(rc::check([] {
+    Rng rng(*rc::gen::arbitrary<std::uint64_t>());
+    const auto cues = any_cues(rng);
+    Bench first(cues, static_cast<double>(rng.below(3)) * 2);
+    for (int i = 0; i < 30; ++i) {
+      (void)first.rehearsal->apply(any_command(rng), first.clock.now());
+      if (rng.below(3) > 0) first.plan_what_is_wanted();
+      first.run_for(static_cast<double>(rng.below(3000)) / 1000);
+    }
+    // What is wanted of the future only is lost: a jump. A reset move is followed by its end.
+    (void)first.tell(Kind::acknowledge);
+    while (first.resets()) {
+      if (first.rehearsal->phase() == Phase::reset_held) (void)first.go();
+      first.run_for(1);
+    }
+    (void)first.tell(Kind::cancel);
+    Bench second(cues);
+    const auto where = first.rehearsal->whereabouts();
+    const double gap_s = static_cast<double>(rng.below(6000)) / 1000;
+    first.run_for(gap_s);
+    second.clock.advance_to(first.clock.now());
+    second.rehearsal->take_up(where, second.clock.now());
+    for (int i = 0; i < 40; ++i) {
+      if (first.rehearsal->reset().state != ResetState::none) break;
+      RC_ASSERT(second.rehearsal->target().current == first.rehearsal->target().current);
+      RC_ASSERT(std::abs((second.position() - first.position()).count()) <= 4);  // rounded at the hand-over
+      RC_ASSERT(second.rehearsal->phase() == first.rehearsal->phase());
+      RC_ASSERT(std::abs((second.rehearsal->goes_at() - first.rehearsal->goes_at()).count()) <= 4);
+      RC_ASSERT(second.rehearsal->holds_at_end() == first.rehearsal->holds_at_end());
+      first.run_for(0.25);
+      second.run_until(first.clock.now());
+    }
+  }));
+}
+
 TEST(RehearsalProperty, NoFloodOfCommandsDelaysOrLosesASwitch) {
   EXPECT_TRUE(rc::check([] {
     Rng rng(*rc::gen::arbitrary<std::uint64_t>());
