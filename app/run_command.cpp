@@ -24,14 +24,19 @@
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
 #include "app/surfaces/prompt_desk.hpp"
+#include "app/surviving/supervisor.hpp"
+#include "app/surviving/surviving.hpp"
 #include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
 #include "config/output_file.hpp"
+#include "config/plan_digest.hpp"
 #include "config/transport_map.hpp"
 #include "core/clock.hpp"
 
 namespace footlight::app {
 namespace {
+
+constexpr Duration kSilence = milliseconds(2000);  // of the cue thread, before it is taken for dead
 
 struct Options {
   PlanChoice choice;
@@ -43,6 +48,7 @@ struct Options {
   std::optional<double> count_in_counts;
   double go_guard_s = 1;
   ConsoleOptions console;
+  SurvivingOptions surviving;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -123,8 +129,14 @@ void tell_limits(Session& session, const Show& show, const Plan& plan,
   }
 }
 
+std::string how_it_ended(const Result<LiveReport>& report) {
+  if (report) return report->finished ? kOver : kQuit;
+  return report.error().kind == ErrorKind::interrupted ? "interrupted" : report.error().message;
+}
+
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
-                        const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log) {
+                        const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
+                        const std::optional<CutOff>& cut) {
   const Show& show = planned.loaded.show;
   RunDesk desk(show, planned.plan());
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
@@ -133,11 +145,16 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
       options.console.open(session, state_folder(options.state), show, planned.plan(), rig, desk, !options.go);
   if (!console) return std::move(console).error();
   LiveOptions live;
+  NodeBoard board(rig.nodes.size());
+  live.nodes = *console ? &(*console)->nodes() : &board;
+  Surviving surviving(journal_in(state_folder(options.state)), std::filesystem::absolute(options.choice.show).string(),
+                      config::digest_of(planned.plan()), rig, live.nodes);
+  surviving.join(desk);
+  if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
   live.stop = session.stop();
   live.wire_log = wire_log;
-  if (*console) live.nodes = &(*console)->nodes();
   live.desk = [&](const DeskView& view) { return desk.look(view); };
   live.answered = [&](const Answer& answer) { desk.answered(answer); };
   live.wait = [&](Duration most) { desk.wait(most); };
@@ -166,6 +183,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
     desk.tell({RunEvent::Kind::moment, line});
   };
   auto report = live_run(show, planned.plan(), rig, ports, live);
+  surviving.journal().close(how_it_ended(report));
   session.clear_line();
   return report;
 }
@@ -179,11 +197,29 @@ Status<> keep(Session& session, WireRecorder& recorder, std::optional<GrowingFil
   return file ? file->keep() : Status<>(Done{});
 }
 
+/// A show does not wait for pages of memory, where the machine lets it.
+void keep_in_memory(Session& session) {
+  if (const std::string why = lock_memory(); !why.empty()) {
+    session.note("the program's memory is not locked: " + why + " (LimitMEMLOCK=infinity in a unit, `ulimit -l`)");
+  }
+}
+
 int run(Session& session, const Options& options) {
+  if (options.surviving.supervised) {
+    return supervise("/proc/self/exe", own_arguments(), kSilence, [&](const std::string& line) { session.note(line); });
+  }
   auto planned = plan_for(session, options.choice, false);
   if (!planned) return session.fail(planned.error());
   // A plan that is not proved, or whose lamps cannot be lit in time, never opens a wire.
   if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
+  std::optional<CutOff> cut;
+  if (options.surviving.resume) {
+    std::string told;
+    auto found = find_cut_off(journal_in(state_folder(options.state)), config::digest_of(planned->plan()), told);
+    if (!found) return session.fail(found.error());
+    cut = *found;
+    if (!told.empty()) session.note(told);
+  }
   Rig rig = planned->loaded.rig;
   if (auto found = find_buses(options, rig); !found) return session.fail(found.error());
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
@@ -197,6 +233,7 @@ int run(Session& session, const Options& options) {
     if (auto spared = spare_inputs(planned->loaded, options.wire_log); !spared) return session.fail(spared.error());
     if (auto opened = file.emplace("wire log", options.wire_log).open(); !opened) return session.fail(opened.error());
   }
+  keep_in_memory(session);
   const SteadyClock clock;
   auto recorder = WireRecorder::open(rig, {traces.ring(), file ? &file->stream() : nullptr}, clock);
   if (!recorder) {
@@ -204,7 +241,7 @@ int run(Session& session, const Options& options) {
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get());
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut);
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));
@@ -241,6 +278,7 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
                       "write all that goes over the wires to this pcapng file, for Wireshark");
   command->add_option("--state", options->state, "folder for the last ten minutes of every wire and what the run said")
       ->default_str("~/.local/state/footlight");
+  options->surviving.add_options(*command);
   session.add_options(*command, true);
   command->footer(
       "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"

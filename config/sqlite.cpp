@@ -13,6 +13,8 @@ namespace {
 /// harmed file that would go round in circles.
 constexpr int kMostOperations = 1'000'000'000;
 
+constexpr int kBusy_ms = 200;  // somebody reads: its writer waits so long, in a thread of its own
+
 int give_up(void* /*unused*/) { return 1; }
 
 Result<sqlite3*> open_memory() {
@@ -121,6 +123,22 @@ Result<Database> Database::from(std::string_view file_content) {
   return out;
 }
 
+Result<Database> Database::open(const std::string& file, Use use) {
+  sqlite3* database = nullptr;
+  const int flags = use == Use::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  const int opened = sqlite3_open_v2(file.c_str(), &database, flags | SQLITE_OPEN_NOMUTEX, nullptr);
+  Database out;
+  out.database_.reset(database);
+  if (opened != SQLITE_OK) return input_error(database == nullptr ? "out of memory" : out.last_error());
+  sqlite3_busy_timeout(database, kBusy_ms);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  if (use == Use::write && (!out.execute("PRAGMA journal_mode = WAL") || !out.execute("PRAGMA synchronous = NORMAL"))) {
+    return input_error(out.last_error());
+  }
+  return out;
+}
+
 bool Database::execute(const char* sql) {
   return sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK;
 }
@@ -143,5 +161,7 @@ std::string Database::content() const {
 }
 
 std::string Database::last_error() const { return sqlite3_errmsg(database_.get()); }
+
+std::int64_t Database::last_row() const { return sqlite3_last_insert_rowid(database_.get()); }
 
 }  // namespace footlight::config

@@ -46,14 +46,20 @@ class Statement {
   bool failed_ = false;
 };
 
-/// An SQLite database in memory, made from or turned into the bytes of a file: nothing beside the file is read
-/// (no journal of a stranger), and what is written can be renamed into place as a whole.
+/// An SQLite database. Plans live in memory, made from or turned into the bytes of a file: nothing beside the file is
+/// read (no journal of a stranger), and what is written can be renamed into place as a whole. What grows while a show
+/// runs is a file of its own.
 class Database {
  public:
   /// An empty one. ErrorKind::internal when memory is out.
   static Result<Database> make();
   /// Read only, trusting nothing in it. Pages are checked as they are read. ErrorKind::input when it is no database.
   static Result<Database> from(std::string_view file_content);
+
+  enum class Use : std::uint8_t { read, write };
+  /// A file on the disk: for reading, or to be written as it grows (write-ahead log; made when it is not there). An
+  /// SQLite file trusts its log and index beside it. ErrorKind::input with SQLite's words.
+  static Result<Database> open(const std::string& file, Use use);
 
   bool execute(const char* sql);
   /// A statement that has failed already when `sql` does not fit the database.
@@ -62,6 +68,7 @@ class Database {
   [[nodiscard]] std::string content() const;
   /// SQLite's words for the last error.
   [[nodiscard]] std::string last_error() const;
+  [[nodiscard]] std::int64_t last_row() const;
 
  private:
   struct Close {

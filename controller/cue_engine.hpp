@@ -98,7 +98,6 @@ class CueEngine {
   /// Of the active cue, or of the standby.
   [[nodiscard]] int percent() const noexcept;
   /// The tempo that was asked for, limited or not.
-  [[nodiscard]] int wanted_percent() const noexcept { return wanted_percent_; }
   /// Fastest of the active cue, or of the standby.
   [[nodiscard]] int limit_percent() const noexcept;
   /// How long the show stands after a cue; nothing: until GO. A source of time that leads waits nowhere.

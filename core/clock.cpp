@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/clock.hpp"
 
+#include <fstream>
+
 #include "core/check.hpp"
+#include "core/machine_time.hpp"
 
 namespace footlight {
 
@@ -13,6 +16,16 @@ Instant SteadyClock::now() const {
 
 Duration wall_time() {
   return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
+}
+
+Duration machine_time() {
+  return std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+std::string machine_start() {
+  std::string id;
+  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, id);
+  return id;
 }
 
 void ManualClock::advance_to(Instant instant) {

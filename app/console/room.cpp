@@ -236,8 +236,9 @@ void Room::told(const RunEvent& event) {
   const auto person = people_.find(asker.who);
   if (audit_ != nullptr) {
     const bool here = person != people_.end();
-    audit_->add({event.who.name, here ? person->second.caller.from : "", std::string(here ? to_text(person->second.role) : ""),
-                 "order " + event.order, (event.refused ? "refused: " : "") + event.text, cue_, about_.plan});
+    audit_->add({event.who.name, here ? person->second.caller.from : "",
+                 std::string(here ? to_text(person->second.role) : ""), "order " + event.order,
+                 (event.refused ? "refused: " : "") + event.text, cue_, about_.plan});
   }
   log(event, asker);
 }

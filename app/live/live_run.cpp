@@ -264,6 +264,7 @@ LiveReport LiveRun::report(const BareTimer& bare, Duration run) {
   }
   out.duration_s = to_seconds(plans_.show().plays.back().to - plans_.show().plays.front().from);
   out.run_s = to_seconds(run);
+  out.finished = state_.phase == controller::Rehearsal::Phase::finished;
   out.real_time = cue_.real_time();
   for (std::size_t b = 0; b < threads_.size(); ++b) {
     LiveBusReport bus = report_bus(b, run);

@@ -55,6 +55,7 @@ struct LiveReport {
   std::uint64_t switches = 0;
   double duration_s = 0;  ///< of show
   double run_s = 0;       ///< of real time, from the first byte to the last
+  bool finished = false;  ///< the last cue had been played
   std::uint64_t deliveries = 0;
   std::uint64_t retries = 0;
   std::uint64_t late_latches = 0;

@@ -24,6 +24,7 @@ import live
 import ola
 import rehearse
 import stage
+import survive
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHARED = os.environ.get("FOOTLIGHT_SHARED", os.path.join(ROOT, "..", "shared"))
@@ -92,6 +93,7 @@ Devices = devices.make_cases(Stage, footlight)
 Ola = ola.make_cases(Stage)
 Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
+Survive = survive.make_cases(Stage, footlight, lambda: PROGRAM, FULL)
 
 
 class Docs(Case):

@@ -1,0 +1,158 @@
+"""Dying and living on: kills, a hung program, a full disk, the journal, an understudy. Part of run.py."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+from rehearse import Desk
+from stage import wait_for
+
+SOAK = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "scripts", "soak")
+
+
+def make_cases(Stage, footlight, program, full):
+    """The test cases, over stage.py's."""
+
+    class Survive(Stage):
+        def make_show(self, *arguments, **options):
+            show = super().make_show(*arguments, **options)
+            footlight("plan", show, "-o", show.replace(".yaml", ".plan"))
+            return show
+
+        def soak(self, *options):
+            done = subprocess.run([sys.executable, SOAK, "--footlight", program(), "--json", self.path("rows.json"), "--verbose", *options], capture_output=True, text=True, timeout=3000)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            with open(self.path("rows.json")) as f:
+                return json.load(f)
+
+        def desk(self, *options):
+            desk = Desk(self, program(), "--count-in", "0", *options)
+            desk.until("roll call", ready=True)
+            return desk
+
+        def notes(self, desk):
+            return [line["note"] for line in list(desk.lines) if "note" in line]
+
+        def journal(self, *options):
+            return json.loads(footlight("journal", "--json", *options)[0])
+
+        def child_of(self, process):
+            return int(wait_for(lambda: open(f"/proc/{process.pid}/task/{process.pid}/children").read().split(), "the child")[0])
+
+        def test_a_run_that_is_killed_again_and_again_leaves_no_marker_wrong(self):
+            row, = self.soak("--kills", "200" if full else "5", "--seed", "3")
+            self.assertEqual((row["wrong"], row["misplaced"]), (0, 0), row)
+
+        def test_memory_and_handles_stay_flat(self):
+            row, = self.soak("--hours", "0.2" if full else "0.015")
+            self.assertEqual(row["wrong"], 0, row)
+            self.assertTrue(row["flat"], row)
+
+        def test_resume_stands_where_the_show_stood_and_the_journal_tells_who_said_what(self):
+            self.make_show()
+            self.serve()
+            desk = self.desk()
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            desk.say("jump cue 9")
+            wait_for(lambda: any("there are 1, 2, 3" in a for a in desk.answers()), "the answer")
+            time.sleep(0.3)
+            desk.process.kill()
+            desk.process.wait()
+            said = self.journal()
+            self.assertEqual(said["runs"][-1]["how"], "")
+            answers = [(e["order"], e["who"], e["refused"], e["text"]) for e in said["entries"] if e["kind"] == "answer"]
+            self.assertEqual(answers, [("go", "lines", False, "the cue starts"), ("jump cue 9", "lines", True, 'jump: no cue "9" (there are 1, 2, 3)')])
+            self.assertFalse(said["last_place"]["runs"])
+            lit = len(self.changes())
+            again = self.desk("--resume")
+            self.assertIn("while the show stood at 0.500 s: it stands there", self.notes(again)[0])
+            self.assertEqual((again.state["phase"], again.state["standby"]), ("stands", "2"))
+            self.assertLessEqual({c["look"] for c in self.changes()[lit:]}, {c["look"] for c in self.changes()[:lit]}, "no lamp shows anything new")
+            again.say("go")
+            again.until("cue 3", phase="finished")
+            again.say("quit")
+            report = again.report()
+            self.assertEqual(again.process.wait(20), 0)
+            self.assert_floor(report)
+            self.assertEqual(self.journal()["runs"][-1]["how"], "over")
+            self.assertIn("over at", footlight("journal", "--runs")[0])
+
+        def test_a_show_that_ran_goes_on_in_time_and_later_it_stands(self):
+            self.make_show()
+            self.serve()
+            desk = self.desk("--after-death", "go-on")
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            time.sleep(0.3)
+            desk.say("go")
+            desk.until("cue 2", phase="runs", cue="2")
+            time.sleep(0.5)
+            desk.process.kill()
+            again = self.desk("--resume")
+            self.assertIn("the show goes on in time", self.notes(again)[0])
+            again.until("the end", phase="finished")
+            again.say("top", "placed")
+            again.until("the top", position_s=0.0)
+            time.sleep(0.3)
+            again.say("go")
+            again.until("the end of cue 1", phase="stands", standby="2")
+            time.sleep(0.3)
+            again.say("go")
+            again.until("cue 2", phase="runs", cue="2")
+            again.process.kill()
+            time.sleep(3)
+            third = self.desk("--resume")
+            self.assertIn("the markers have lost guidance since; see where people are before GO", self.notes(third)[0])
+            self.assertEqual((third.state["phase"], third.state["cue"]), ("stands", "2"))
+            third.say("go")
+            third.until("the end", phase="finished")
+
+        def test_another_plan_is_not_taken_up(self):
+            self.make_show()
+            self.serve()
+            desk = self.desk()
+            desk.process.kill()
+            desk.process.wait()
+            with open(self.show) as f:
+                text = f.read()
+            with open(self.show, "w") as f:
+                f.write(text.replace("tempo: 240", "tempo: 230"))
+            _, said = footlight("run", self.show, "--transport-map", self.map, "--resume", status=2)
+            self.assertIn("--resume: the run that was cut off led another plan", said)
+
+        def test_a_supervised_run_that_hangs_is_begun_again_and_sigterm_ends_both(self):
+            self.make_show()
+            self.serve()
+            desk = self.desk("--supervised")
+            child = self.child_of(desk.process)
+            os.kill(child, signal.SIGSTOP)
+            wait_for(lambda: any(n.startswith("cut off") for n in self.notes(desk)), "the next life", 30)
+            self.assertNotEqual(self.child_of(desk.process), child)
+            desk.say("go")
+            desk.until("its stdin is the same", phase="stands", standby="2")
+            child = self.child_of(desk.process)
+            desk.process.send_signal(signal.SIGTERM)
+            self.assertEqual(desk.process.wait(20), 130)
+            self.assertFalse(os.path.exists(f"/proc/{child}"))
+
+        def test_a_full_disk_is_an_alarm_and_the_show_ends_as_it_should(self):
+            self.make_show()
+            self.serve()
+            os.mkdir(self.path("full"))
+            # A disk of its own, seen by this run alone, and not a byte free on it.
+            script = f"mount -t tmpfs -o size=64k none {self.path('full')} && (cat /dev/zero >{self.path('full', 'x')} 2>/dev/null; exec \"$@\")"
+            inside = ["unshare", "--mount"] if os.getuid() == 0 else ["unshare", "--mount", "--user", "--map-root-user"]
+            done = subprocess.run([*inside, "sh", "-c", script, "sh", program(), "run", self.show, "--transport-map", self.map, "--go", "--status-lines",
+                                   "--state", self.path("full")], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr)
+            lines = [json.loads(line) for line in done.stdout.splitlines()]
+            alarms = [line["alarm"] for line in lines if "alarm" in line]
+            self.assertEqual(len(alarms), 1, alarms)
+            self.assertIn("takes nothing: ", alarms[0])
+            self.assertIn("the show goes on", alarms[0])
+            self.assert_floor(lines[-1]["report"])
+
+    return Survive
