@@ -20,6 +20,7 @@
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
 #include "app/plan_step.hpp"
+#include "app/remote/remote_control.hpp"
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/state_folder.hpp"
@@ -49,6 +50,7 @@ struct Options {
   double go_guard_s = 1;
   ConsoleOptions console;
   SurvivingOptions surviving;
+  RemoteOptions remote;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -144,6 +146,9 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   auto console =
       options.console.open(session, state_folder(options.state), show, planned.plan(), rig, desk, !options.go);
   if (!console) return std::move(console).error();
+  const SteadyClock clock;
+  const auto remote = RemoteControl::open(options.remote, show, planned.plan(), desk, clock, !options.go);
+  if (!remote) return remote.error();
   LiveOptions live;
   NodeBoard board(rig.nodes.size());
   live.nodes = *console ? &(*console)->nodes() : &board;
@@ -279,6 +284,7 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("--state", options->state, "folder for the last ten minutes of every wire and what the run said")
       ->default_str("~/.local/state/footlight");
   options->surviving.add_options(*command);
+  options->remote.add_options(*command);
   session.add_options(*command, true);
   command->footer(
       "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"

@@ -77,6 +77,7 @@ struct Listing {
 [[nodiscard]] const Listing& show_listing();
 [[nodiscard]] const Listing& rig_listing();
 [[nodiscard]] const Listing& profile_listing();
+[[nodiscard]] const Listing& remote_listing();
 /// What lamps take, in a rig and in a profile.
 [[nodiscard]] const Listing& currents_listing();
 

@@ -60,6 +60,8 @@ std::string show_reference() {
   add_tables(out, rig_listing());
   out += "## Keys of a device profile\n\n";
   add_tables(out, profile_listing());
+  out += "## Keys of the remote control file\n\n";
+  add_tables(out, remote_listing());
   return out;
 }
 

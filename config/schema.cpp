@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field.hpp"
+#include "config/remote_file.hpp"
 #include "config/rig_file.hpp"
 #include "config/show_file.hpp"
 #include "core/check.hpp"
@@ -155,6 +156,7 @@ std::string schema_text(const Listing& listing, std::string_view title) {
 
 std::string show_schema() { return schema_text(show_listing(), "Footlight show file"); }
 std::string rig_schema() { return schema_text(rig_listing(), "Footlight rig file"); }
+std::string remote_schema() { return schema_text(remote_listing(), "Footlight remote control file"); }
 std::string profile_schema() { return schema_text(profile_listing(), "Footlight device profile"); }
 
 }  // namespace footlight::config

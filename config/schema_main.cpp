@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "config/remote_file.hpp"
 #include "config/show_file.hpp"
 
 namespace {
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(docs / "schema", ignored);
   const bool written = write(docs / "schema" / "show.schema.json", footlight::config::show_schema()) &&
                        write(docs / "schema" / "rig.schema.json", footlight::config::rig_schema()) &&
+                       write(docs / "schema" / "remote.schema.json", footlight::config::remote_schema()) &&
                        write(docs / "schema" / "profile.schema.json", footlight::config::profile_schema()) &&
                        write_tables(docs / "show-file.md");
   return written ? 0 : 2;

@@ -8,8 +8,7 @@
 
 namespace footlight::app {
 
-/// Longer messages are not for a show: they are left out and counted. (Show control has at most 128 bytes of data, MIDI
-/// Show Control 1.1, section 4.2.)
+/// Longer messages are not for a show: they are left out and counted.
 inline constexpr std::size_t kLongestMidiMessage = 256;
 
 /// A stream of MIDI bytes, cut anywhere, as whole messages (MIDI 1.0 Detailed Specification): running status is written

@@ -28,8 +28,10 @@ class StateText {
   /// What a phase is called.
   [[nodiscard]] static std::string_view to_text(controller::Rehearsal::Phase phase);
 
- private:
+  /// What happens now, or what GO would do.
   [[nodiscard]] std::string what_happens(const ShowState& state) const;
+
+ private:
   [[nodiscard]] std::string buses(const std::vector<BusView>& buses) const;
   [[nodiscard]] std::string_view section_at(Instant position) const;
   [[nodiscard]] std::string cue(int cue) const;

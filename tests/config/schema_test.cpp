@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field.hpp"
+#include "config/remote_file.hpp"
 #include "config/show_file.hpp"
 
 namespace footlight::config {
@@ -24,6 +25,10 @@ TEST(Schema, OfShowsIsTheOneCheckedIn) { EXPECT_EQ(content("docs/schema/show.sch
 TEST(Schema, OfRigsIsTheOneCheckedIn) { EXPECT_EQ(content("docs/schema/rig.schema.json"), rig_schema()) << kRemedy; }
 TEST(Schema, OfProfilesIsTheOneCheckedIn) {
   EXPECT_EQ(content("docs/schema/profile.schema.json"), profile_schema()) << kRemedy;
+}
+
+TEST(Schema, OfRemoteControlIsTheOneCheckedIn) {
+  EXPECT_EQ(content("docs/schema/remote.schema.json"), remote_schema()) << kRemedy;
 }
 
 TEST(Schema, NamesItsDraftAndRefusesUnknownKeys) {
@@ -58,7 +63,8 @@ void expect_documented(const Listing& listing) {
 }
 
 TEST(Listings, SayOfEveryKeyWhatItIsAndWhatHoldsWithoutIt) {
-  for (const Listing* listing : {&show_listing(), &rig_listing(), &profile_listing()}) expect_documented(*listing);
+  for (const Listing* listing : {&show_listing(), &rig_listing(), &profile_listing(), &remote_listing()})
+    expect_documented(*listing);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ import devices
 import live
 import ola
 import rehearse
+import remote
 import stage
 import survive
 
@@ -94,6 +95,7 @@ Ola = ola.make_cases(Stage)
 Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
 Survive = survive.make_cases(Stage, footlight, lambda: PROGRAM, FULL)
+Remote = remote.make_cases(Stage, lambda: PROGRAM, rehearse.Desk, stage.SHOW)
 
 
 class Docs(Case):

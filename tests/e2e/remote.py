@@ -1,0 +1,220 @@
+"""A run that is led from afar: OSC over real UDP, MIDI Show Control through a FIFO. Part of run.py."""
+import os
+import socket
+import struct
+import threading
+import time
+
+from stage import wait_for
+
+
+def padded(data):
+    return data + b"\0" * (4 - len(data) % 4)
+
+
+def osc(address, *values):
+    """An OSC message."""
+    types, data = ",", b""
+    for value in values:
+        if isinstance(value, str):
+            types, data = types + "s", data + padded(value.encode())
+        elif isinstance(value, float):
+            types, data = types + "f", data + struct.pack(">f", value)
+        else:
+            types, data = types + "i", data + struct.pack(">i", value)
+    return padded(address.encode()) + padded(types.encode()) + data
+
+
+def text_of(data):
+    return data[:data.index(b"\0")].decode()
+
+
+class Surface:
+    """A control surface: sends, and keeps what is answered."""
+
+    def __init__(self, case, port):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.settimeout(0.05)
+        self.port, self.heard, self.over = port, [], False
+        self.reader = threading.Thread(target=self.read)
+        self.reader.start()
+        case.addCleanup(self.end)
+
+    def end(self):
+        self.over = True
+        self.reader.join()
+        self.socket.close()
+
+    def read(self):
+        while not self.over:
+            try:
+                data = self.socket.recv(65536)
+            except (TimeoutError, ConnectionError):
+                continue
+            strings = [part.decode(errors="replace") for part in data.split(b"\0") if part]
+            self.heard.append(tuple(strings))
+
+    def send(self, *message):
+        self.socket.sendto(osc(*message), ("127.0.0.1", self.port))
+
+    def answers(self, address):
+        return [h[2:] for h in list(self.heard) if h[0] == "/reply" + address]
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def make_cases(Stage, program, Desk, SHOW):
+    """The test cases, over stage.py's and rehearse.py's."""
+
+    class Remote(Stage):
+        def write(self, name, text):
+            with open(self.path(name), "w") as f:
+                f.write(text)
+            return self.path(name)
+
+        def led_by_osc(self, more="", show=SHOW):
+            self.make_show(show=show)
+            self.serve()
+            port = free_port()
+            remote = self.write("remote.yaml", f"remote: 1\nosc: {{port: {port}}}\n{more}")
+            desk = Desk(self, program(), "--count-in", "0", "--remote", remote)
+            desk.until("roll call", ready=True)
+            return desk, Surface(self, port)
+
+        def test_a_show_is_led_by_osc(self):
+            desk, surface = self.led_by_osc()
+            surface.send("/cue/2/start")
+            wait_for(lambda: surface.answers("/cue/2/start"), "the refusal")
+            self.assertEqual(surface.answers("/cue/2/start")[0][0], "refused")
+            surface.send("/go", 1.0)
+            surface.send("/go", 0.0)
+            desk.until("cue 1 is over", phase="stands", standby="2")
+            self.assertEqual(surface.answers("/go"), [("ok", "the cue starts")])
+            time.sleep(0.3)
+            surface.send("/cue/2/start")
+            desk.until("cue 2", phase="runs", cue="2")
+            surface.send("/panic")
+            desk.until("the hold", phase="stands", cue="2")
+            time.sleep(0.3)
+            surface.send("/resume")
+            desk.until("the end", phase="finished")
+            desk.say("quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assertEqual(report["unconfirmed"], 0)
+            self.assert_floor(report)
+
+        def test_a_flood_by_udp_loses_commands_and_no_cue(self):
+            desk, surface = self.led_by_osc()
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            time.sleep(0.3)
+            desk.say("go")
+            desk.until("cue 2", phase="runs", cue="2")
+            sent, over = [0], threading.Event()
+
+            def flood():
+                messages = [osc("/go"), osc("/footlight/order", "tempo 99999"), osc("/cue/9/start"), b"\xff" * 100, osc("/footlight/order", "placed"), osc("/resume")]
+                with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+                    while not over.is_set():
+                        for message in messages:
+                            out.sendto(message, ("127.0.0.1", surface.port))
+                        sent[0] += len(messages)
+                        time.sleep(0.0005)
+
+            flooding = threading.Thread(target=flood)
+            flooding.start()
+            try:
+                desk.until("the end", phase="finished")
+            finally:
+                over.set()
+                flooding.join()
+            desk.say("quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assertGreater(sent[0], 2000)
+            self.assertEqual(report["unconfirmed"], 0)
+            self.assertEqual(report["deaf"], 0)
+            self.assertTrue(any("messages were lost" in line.get("note", "") for line in desk.lines))
+            self.assertTrue(any("has pressed GO for more than 5 s" in line.get("alarm", "") for line in desk.lines) or "too soon after the last GO" in desk.answers() or "the cue runs" in desk.answers())
+            self.assert_floor(report)
+
+        def test_a_gate_that_is_lost_holds_the_cue_and_go_is_refused(self):
+            show = SHOW.replace("announce:", "gates: [trap closed]\nannounce:").replace("name: Ring,", "name: Ring, gates: [trap closed],")
+            desk, surface = self.led_by_osc("gates: [{gate: trap closed, osc: true, lost_after: 0.5 s}]\nbuttons: [{name: spotter, does: hold, osc: true}]\n", show)
+            closed = threading.Event()
+            over = threading.Event()
+
+            def keep():
+                while not over.wait(0.1):
+                    if closed.is_set():
+                        surface.send("/footlight/gate", "trap closed", 1)
+
+            keeper = threading.Thread(target=keep)
+            keeper.start()
+            try:
+                desk.say("go")
+                desk.until("cue 1 is over", phase="stands", standby="2")
+                time.sleep(0.3)
+                desk.say("go")
+                wait_for(lambda: any("a gate that it needs is open" in text for text in desk.answers()), "the refusal")
+                self.assertIn("trap closed: lost, nobody knows", desk.state["against"])
+                closed.set()
+                desk.until("the gate", gates=[{"name": "trap closed", "state": "closed"}])
+                time.sleep(0.3)
+                desk.say("go")
+                desk.until("cue 2", phase="runs", cue="2")
+                closed.clear()
+                desk.until("the hold", phase="stands", cue="2", gates=[{"name": "trap closed", "state": "lost"}])
+                self.assertTrue(any(line.get("alarm", "").startswith("trap closed: lost") for line in desk.lines))
+                surface.send("/footlight/button", "spotter", 1)
+                desk.say("gate trap closed by word")
+                desk.until("the spotter's hold", against=["button spotter is pressed"])
+                surface.send("/footlight/button", "spotter", 0)
+                desk.until("the spotter lets go", against=[])
+                time.sleep(0.3)
+                desk.say("go")
+                desk.until("the end", phase="finished")
+            finally:
+                over.set()
+                keeper.join()
+            desk.say("quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assert_floor(report)
+
+        def test_a_show_is_led_by_midi_show_control(self):
+            self.make_show()
+            self.serve()
+            os.mkfifo(self.path("midi"))
+            remote = self.write("remote.yaml", f"remote: 1\nmidi: {{port: {self.path('midi')}, macros: [{{number: 7, order: hold end}}]}}\n")
+            desk = Desk(self, program(), "--count-in", "0", "--remote", remote)
+            desk.until("roll call", ready=True)
+            with open(self.path("midi"), "wb", buffering=0) as midi:
+                midi.write(bytes([0x90, 0x3C, 0xF0, 0x7F, 0x7F, 0x02]))
+                midi.write(bytes([0x01, 0xF8, 0x01, 0x31, 0xF7, 0xFE]))
+                desk.until("cue 1 is over", phase="stands", standby="2")
+                time.sleep(0.3)
+                midi.write(bytes.fromhex("F07F7F02010132F7"))
+                desk.until("cue 2", phase="runs", cue="2")
+                midi.write(bytes.fromhex("F07F7F020108F7"))
+                desk.until("all off holds", phase="stands", cue="2")
+                midi.write(bytes.fromhex("F07F7F02010133F7"))
+                wait_for(lambda: any("cue 3 is not standby" in text or "does not wait" in text for text in desk.answers()), "the refusal")
+            desk.say("quit")
+            self.assertEqual(desk.process.wait(20), 0)
+
+        def test_a_show_with_gates_does_not_run_without_inputs(self):
+            show = SHOW.replace("announce:", "gates: [trap closed]\nannounce:").replace("name: Ring,", "name: Ring, gates: [trap closed],")
+            self.make_show(show=show)
+            self.serve()
+            desk = Desk(self, program())
+            self.assertEqual(desk.process.wait(60), 2)
+            self.play("--gates-by-people")
+
+    return Remote
