@@ -20,6 +20,8 @@
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
 #include "app/plan_step.hpp"
+#include "app/readiness/preflight.hpp"
+#include "app/readiness/readiness_surface.hpp"
 #include "app/remote/remote_control.hpp"
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
@@ -51,6 +53,7 @@ struct Options {
   ConsoleOptions console;
   SurvivingOptions surviving;
   RemoteOptions remote;
+  ReadyOptions ready;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -138,7 +141,7 @@ std::string how_it_ended(const Result<LiveReport>& report) {
 
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
-                        const std::optional<CutOff>& cut) {
+                        const std::optional<CutOff>& cut, Readiness& readiness) {
   const Show& show = planned.loaded.show;
   RunDesk desk(show, planned.plan());
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
@@ -155,6 +158,8 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   Surviving surviving(journal_in(state_folder(options.state)), std::filesystem::absolute(options.choice.show).string(),
                       config::digest_of(planned.plan()), rig, live.nodes);
   surviving.join(desk);
+  ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go || cut);
+  desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
@@ -229,8 +234,17 @@ int run(Session& session, const Options& options) {
   if (auto found = find_buses(options, rig); !found) return session.fail(found.error());
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
   if (auto wires = check_wires(session, rig.buses); !wires) return session.fail(wires.error());
+  Readiness readiness(options.ready.scope);
+  const BusesToAsk wires{options.choice.show, options.transports, rig, cut.has_value()};
+  if (auto ready = preflight(session, wires, planned->loaded.show, readiness); !ready)
+    return session.fail(ready.error());
+  if (options.ready.scope == Scope::none) {
+    session.print(session.json ? stages_json(readiness) : stages_text(readiness));
+    return 0;
+  }
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
+  readiness.tell(Readiness::Stage::buses, Readiness::State::success, fmt::format("{} open", rig.buses.size()));
   if (const auto changed = wipe_note(state_folder(options.state), options.choice.show, rig)) session.note(*changed);
   Traces traces(session, options, *planned, rig);
   std::optional<GrowingFile> file;
@@ -246,7 +260,7 @@ int run(Session& session, const Options& options) {
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut);
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness);
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));
@@ -285,6 +299,7 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
       ->default_str("~/.local/state/footlight");
   options->surviving.add_options(*command);
   options->remote.add_options(*command);
+  options->ready.add_options(*command);
   session.add_options(*command, true);
   command->footer(
       "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"

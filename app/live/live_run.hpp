@@ -87,6 +87,18 @@ struct GateView {
   State state = State::lost;
 };
 
+/// What is ready and what is not (app/readiness).
+struct ReadinessView {
+  struct Stage {
+    std::string_view name;
+    std::string_view state;  ///< "SUCCESS"
+    std::string text;
+  };
+  std::string_view scope{};  ///< empty: nobody asks
+  bool armed = true;
+  std::vector<Stage> stages{};
+};
+
 /// What the desk sees.
 struct DeskView {
   ShowState show;
@@ -96,6 +108,7 @@ struct DeskView {
   std::shared_ptr<const Plan> way{};                  ///< the reset move that was planned last; null: none was
   // Filled in by the desk.
   std::vector<GateView> gates{};
+  ReadinessView readiness{};
   std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"
 };
 

@@ -139,6 +139,8 @@ std::string StateText::changes(const DeskView& view) {
                                 state.target.current, state.holds_at_end, state.loops, view.roll_called);
   for (const std::string& against : view.against) now += " " + against;
   for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
+  for (const ReadinessView::Stage& stage : view.readiness.stages) now += fmt::format(" {}", stage.state);
+  now += view.readiness.armed ? " armed" : " refused";
   for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
   return now;
 }
@@ -164,6 +166,13 @@ std::string StateText::json(const DeskView& view) const {
   }
   Json gates = Json::array();
   for (const GateView& gate : view.gates) gates.push_back({{"name", gate.name}, {"state", app::to_text(gate.state)}});
+  Json readiness = nullptr;
+  if (!view.readiness.scope.empty()) {
+    readiness = {{"scope", view.readiness.scope}, {"armed", view.readiness.armed}, {"stages", Json::array()}};
+    for (const ReadinessView::Stage& stage : view.readiness.stages) {
+      readiness["stages"].push_back({{"name", stage.name}, {"state", stage.state}, {"text", stage.text}});
+    }
+  }
   Json loop = nullptr;
   if (state.loops) loop = {{"from_s", to_seconds(state.loop.from)}, {"to_s", to_seconds(state.loop.to)}};
   const Json document{{"phase", to_text(state.phase)},
@@ -184,6 +193,7 @@ std::string StateText::json(const DeskView& view) const {
                       {"switch", state.target.current},
                       {"gates", std::move(gates)},
                       {"against", view.against},
+                      {"readiness", std::move(readiness)},
                       {"ready", view.roll_called},
                       {"buses", std::move(buses)}};
   return Json{{"state", document}}.dump();

@@ -1,4 +1,5 @@
 """A run that is led from afar: OSC over real UDP, MIDI Show Control through a FIFO. Part of run.py."""
+import json
 import os
 import socket
 import struct
@@ -68,7 +69,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def make_cases(Stage, program, Desk, SHOW):
+def make_cases(Stage, footlight, program, Desk, SHOW):
     """The test cases, over stage.py's and rehearse.py's."""
 
     class Remote(Stage):
@@ -216,5 +217,46 @@ def make_cases(Stage, program, Desk, SHOW):
             desk = Desk(self, program())
             self.assertEqual(desk.process.wait(60), 2)
             self.play("--gates-by-people")
+
+        def test_a_live_run_asks_for_three_lamps_and_refuses_go_until_it_is_armed(self):
+            self.make_show()
+            self.serve()
+            desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
+            desk.say("", "yes", "yes", "yes")
+            desk.until("roll call", ready=True)
+            desk.say("go")
+            wait_for(lambda: any("the show is not ready: nobody has said arm" in text for text in desk.answers()), "the refusal")
+            stages = {s["name"]: s["state"] for s in desk.state["readiness"]["stages"]}
+            self.assertEqual(stages, {"show": "SUCCESS", "plan": "SUCCESS", "buses": "SUCCESS", "roll-call": "SUCCESS", "plan-on-nodes": "SUCCESS", "probes": "SUCCESS", "looks": "SUCCESS", "time": "SKIPPED"})
+            self.assertFalse(desk.state["readiness"]["armed"])
+            desk.say("arm")
+            wait_for(lambda: desk.state["readiness"]["armed"], "arm")
+            time.sleep(0.3)
+            desk.say("go")
+            desk.until("cue 1 is over", phase="stands", standby="2")
+            desk.say("quit")
+            self.assertEqual(desk.report()["unconfirmed"], 0)
+            self.assertEqual(desk.process.wait(20), 0)
+
+        def test_a_lamp_that_is_elsewhere_is_an_error_that_somebody_answers_for(self):
+            self.make_show()
+            self.serve()
+            desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
+            desk.say("yes", "no")
+            desk.until("roll call", ready=True)
+            desk.say("arm")
+            wait_for(lambda: any("arm: probes ERROR" in text for text in desk.answers()), "the refusal")
+            desk.say("override probes", "arm", "go")
+            desk.until("cue 1 is over", phase="stands", standby="2")
+            desk.say("quit")
+            self.assertEqual(desk.process.wait(20), 0)
+
+        def test_scope_none_opens_nothing(self):
+            self.make_show()
+            self.serve()
+            self.end_of_sim()
+            out = json.loads(footlight("run", self.show, "--transport-map", self.map, "--scope", "none", "--json")[0])
+            self.assertEqual([s["state"] for s in out["stages"]][:3], ["SUCCESS", "SUCCESS", "OFF"])
+            self.assertFalse(out["armed"])
 
     return Remote

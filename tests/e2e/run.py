@@ -95,7 +95,7 @@ Ola = ola.make_cases(Stage)
 Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
 Survive = survive.make_cases(Stage, footlight, lambda: PROGRAM, FULL)
-Remote = remote.make_cases(Stage, lambda: PROGRAM, rehearse.Desk, stage.SHOW)
+Remote = remote.make_cases(Stage, footlight, lambda: PROGRAM, rehearse.Desk, stage.SHOW)
 
 
 class Docs(Case):

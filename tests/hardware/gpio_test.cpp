@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
+#include "app/remote/panel_surface.hpp"
+#include "core/clock.hpp"
 #include "drivers/transports/gpio_line.hpp"
 #include "drivers/transports/push_button.hpp"
 #include "tests/hardware/gpio_chip.hpp"
 #include "tests/hardware/guest.hpp"
+#include "tests/support/small_show.hpp"
 
 namespace footlight::hardware {
 namespace {
@@ -116,6 +119,47 @@ TEST_F(GpioSim, ALineThatSomebodyUsesIsRefusedAndSoIsOneThatIsNotThere) {
                                         "`gpioinfo`)");
   EXPECT_EQ(open_gpio(chip_.name(), 8, {}).error().message,
             "GPIO line 8 of \"" + chip_.name() + "\": no such line (0..7)");
+}
+
+/// The panel of a run: GO on line 0, a spotter's hold on 1, a gate on 2, a cue light on 3 and 4.
+TEST_F(GpioSim, ThePanelOfARunIsThatOfTheChip) {
+  using Does = config::RemoteButton::Does;
+  for (const unsigned line : {0U, 1U, 2U}) chip_.pull(line, false);
+  const auto place = [&](unsigned line) { return config::GpioPlace{chip_.name(), line, false, {}}; };
+  config::Remote remote;
+  remote.buttons = {{"GO", Does::go, "", "", {place(0), {}}}, {"left", Does::hold, "", "", {place(1), {}}}};
+  remote.gates = {{0, {place(2), {}}}};
+  remote.cue_lights = {{"flies", place(3), place(4)}};
+  ManualClock clock;
+  app::Interlocks interlocks({"trap"}, remote, clock.now());
+  app::Panel panel(remote, interlocks);
+  const tests::SmallShow small = tests::random_show(6, 6, 4, 3, 2, 1);
+  app::RunDesk desk(small.show, small.plan);
+  auto opened = app::PanelSurface::open(remote, interlocks, panel, clock, true,
+                                        [](const config::GpioPlace& at, const GpioSettings& settings) {
+                                          return open_gpio(at.chip, at.offset, settings);
+                                        });
+  ASSERT_TRUE(opened) << opened.error().message;
+  desk.add(**opened);
+  const auto look = [&] {
+    clock.advance(milliseconds(50));
+    return desk.look(app::DeskView{});
+  };
+  EXPECT_EQ(look().bars, 1U) << "the gate is open";
+  EXPECT_FALSE(readable((*opened)->file()));
+  for (const bool bounce : {true, false, true, false, true}) chip_.pull(0, bounce);
+  EXPECT_TRUE(readable((*opened)->file())) << "an edge wakes the desk";
+  EXPECT_EQ(look().commands.size(), 1U);
+  chip_.pull(1, true);
+  chip_.pull(1, false);
+  EXPECT_NE(look().bars & controller::kHoldPressed, 0U) << "over before anybody looked";
+  chip_.pull(2, true);
+  for (int i = 0; i < 4; ++i) (void)look();
+  EXPECT_EQ(look().bars, 0U);
+  ASSERT_TRUE(panel.standby({}));
+  (void)look();
+  EXPECT_TRUE(chip_.value(3));
+  EXPECT_FALSE(chip_.value(4));
 }
 
 }  // namespace

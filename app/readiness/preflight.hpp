@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "app/load.hpp"
+#include "app/readiness/readiness.hpp"
+#include "app/session.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace footlight::app {
+
+struct ReadyOptions {
+  Scope scope = Scope::rehearsal;
+
+  void add_options(CLI::App& command);
+};
+
+struct BusesToAsk {
+  std::string show;        ///< its file
+  std::string transports;  ///< transport map; empty: none
+  const Rig& wires;        ///< with its real URLs
+  bool taken_up = false;   ///< a run that was cut off: nobody has time to look at lamps
+};
+
+/// What has to be done before a show has the buses for itself, where the scope is live: every bus is asked who is
+/// there, by unique id where its devices have one, and three lamps are lit one after the other, each alone, until
+/// somebody has confirmed them on stdin. Tells `readiness`. Errors: a bus that cannot be opened or asked; interrupted.
+[[nodiscard]] Status<> preflight(Session& session, const BusesToAsk& buses, const Show& show, Readiness& readiness);
+
+}  // namespace footlight::app

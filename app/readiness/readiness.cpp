@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/readiness/readiness.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace footlight::app {
+namespace {
+
+constexpr std::size_t kNamed = 8;  // nodes of a message
+
+bool done(Readiness::State state) {
+  using State = Readiness::State;
+  return state == State::success || state == State::skipped || state == State::warning;
+}
+
+/// 3290 as "3,290"
+std::string grouped(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), ",");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string_view to_text(Scope scope) {
+  constexpr std::array<std::string_view, 4> kTexts{"none", "rehearsal", "live", "lights-only"};
+  return kTexts.at(static_cast<std::size_t>(scope));
+}
+
+std::string_view to_text(Readiness::Stage stage) {
+  constexpr std::array<std::string_view, Readiness::kStages> kTexts{"show",          "plan",   "buses", "roll-call",
+                                                                    "plan-on-nodes", "probes", "looks", "time"};
+  return kTexts.at(static_cast<std::size_t>(stage));
+}
+
+std::string_view to_text(Readiness::State state) {
+  constexpr std::array<std::string_view, 7> kTexts{"OFF", "NEXT", "WAITING", "SUCCESS", "SKIPPED", "WARNING", "ERROR"};
+  return kTexts.at(static_cast<std::size_t>(state));
+}
+
+Readiness::Readiness(Scope scope) : scope_(scope) {}
+
+void Readiness::tell(Stage stage, State state, std::string text, bool lock) {
+  Fact& fact = facts_.at(static_cast<std::size_t>(stage));
+  if (fact.lock) return;  // for this run
+  // What was overridden was this; another error is another decision.
+  if (state != State::error || text != fact.text) fact.overridden_by.clear();
+  fact.state = state;
+  fact.text = std::move(text);
+  fact.lock = lock;
+}
+
+Readiness::State Readiness::state_of(const Fact& fact) const {
+  return fact.state == State::error && !fact.overridden_by.empty() && !fact.lock ? State::warning : fact.state;
+}
+
+Result<std::string> Readiness::override_stage(std::string_view name, std::string_view who) {
+  std::string all;
+  for (std::size_t s = 0; s < kStages; ++s) {
+    const std::string_view stage = to_text(static_cast<Stage>(s));
+    all += (all.empty() ? "" : ", ") + std::string(stage);
+    if (stage != name) continue;
+    Fact& fact = facts_[s];
+    if (fact.state != State::error) {
+      return input_error(fmt::format("override: {} is {}, no ERROR", name, to_text(state_of(fact))));
+    }
+    if (fact.lock) return input_error(fmt::format("override: {}: {}: nobody answers for that", name, fact.text));
+    fact.overridden_by = who;
+    return fmt::format("{} is overridden by {}: {}", name, who, fact.text);
+  }
+  return input_error(fmt::format("override: no stage \"{}\" (there are {})", name, all));
+}
+
+bool Readiness::locked() const { return std::ranges::any_of(facts_, &Fact::lock); }
+
+Result<std::string> Readiness::arm() {
+  if (scope_ == Scope::none) return input_error("arm: the scope is none: nothing may be lit");
+  std::string missing;
+  for (const Report& stage : report()) {
+    if (done(stage.state)) continue;
+    missing += fmt::format("{}{} {}{}{}", missing.empty() ? "" : "; ", stage.name, to_text(stage.state),
+                           stage.text.empty() ? "" : ": ", stage.text);
+  }
+  if (!missing.empty()) return input_error("arm: " + missing);
+  armed_ = true;
+  return std::string("GO is armed");
+}
+
+Result<std::string> Readiness::disarm() {
+  if (scope_ != Scope::live) return input_error("disarm: only a run with --scope live is armed");
+  armed_ = false;
+  return std::string("GO is refused until somebody arms it again");
+}
+
+bool Readiness::refuses_go() const {
+  if (scope_ == Scope::none) return true;
+  if (scope_ == Scope::live) return !armed_;
+  return locked();
+}
+
+std::vector<Readiness::Report> Readiness::report() const {
+  std::vector<Report> out;
+  bool reached = true;  // all before are done
+  for (std::size_t s = 0; s < kStages; ++s) {
+    State state = state_of(facts_[s]);
+    if (state == State::off && reached && scope_ != Scope::none) state = State::next;
+    out.push_back({to_text(static_cast<Stage>(s)), state, facts_[s].text, !facts_[s].overridden_by.empty()});
+    reached = reached && done(state);
+  }
+  return out;
+}
+
+std::vector<std::string> Readiness::against() const {
+  if (!refuses_go()) return {};
+  std::vector<std::string> out;
+  for (const Report& stage : report()) {
+    if (stage.state == State::error || stage.state == State::waiting) {
+      out.push_back(fmt::format("{}: {}", stage.name, stage.text));
+    }
+  }
+  if (out.empty()) out.emplace_back(scope_ == Scope::none ? "the scope is none" : "nobody has said arm");
+  return out;
+}
+
+std::string stages_text(const Readiness& readiness) {
+  std::string text =
+      fmt::format("scope {}, {}", to_text(readiness.scope()), readiness.refuses_go() ? "GO is refused" : "GO is there");
+  for (const Readiness::Report& stage : readiness.report()) {
+    text += fmt::format("\n  {:<8} {:<14}{}{}", to_text(stage.state), stage.name, stage.text,
+                        stage.overridden ? " (overridden)" : "");
+  }
+  return text;
+}
+
+std::string stages_json(const Readiness& readiness) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::array();
+  for (const Readiness::Report& stage : readiness.report()) {
+    stages.push_back({{"name", stage.name}, {"state", to_text(stage.state)}, {"text", stage.text}});
+  }
+  return nlohmann::ordered_json{
+      {"scope", to_text(readiness.scope())}, {"armed", !readiness.refuses_go()}, {"stages", std::move(stages)}}
+      .dump();
+}
+
+std::string silence_text(std::size_t silent_markers, std::size_t markers, const std::vector<std::string>& silent) {
+  std::string names;
+  for (std::size_t i = 0; i < std::min(silent.size(), kNamed); ++i) names += (i > 0 ? ", " : "") + silent[i];
+  if (silent.size() > kNamed) names += fmt::format(" and {} more nodes", silent.size() - kNamed);
+  return fmt::format("{} of {} markers silent: {}", grouped(silent_markers), grouped(markers), names);
+}
+
+}  // namespace footlight::app

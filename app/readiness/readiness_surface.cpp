@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/readiness/readiness_surface.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace footlight::app {
+namespace {
+
+using Stage = Readiness::Stage;
+using State = Readiness::State;
+using Phase = controller::Rehearsal::Phase;
+using ResetState = controller::Rehearsal::ResetState;
+
+}  // namespace
+
+ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board, RunDesk& desk,
+                                   bool arms)
+    : readiness_(readiness), rig_(rig), board_(board), arms_(arms) {
+  for (const Node& node : rig.nodes) markers_ += node.channels.size();
+  desk.bar(controller::kNotReady, readiness.refuses_go());
+  desk.add([&readiness](DeskView& view) {
+    view.readiness.scope = to_text(readiness.scope());
+    view.readiness.armed = !readiness.refuses_go();
+    for (const Readiness::Report& stage : readiness.report()) {
+      view.readiness.stages.push_back({stage.name, to_text(stage.state), stage.text});
+    }
+    if ((view.show.barred & controller::kNotReady) == 0) return;
+    for (std::string& text : readiness.against()) view.against.push_back(std::move(text));
+  });
+  add_orders(desk);
+}
+
+void ReadinessSurface::add_orders(RunDesk& desk) {
+  desk.add({"ready", "ready                        what is ready and what is not\n",
+            [this](const std::vector<std::string>&, const Speaker&) -> Result<std::string> {
+              return stages_text(readiness_);
+            }});
+  desk.add({"arm", "arm; disarm                  GO counts, where --scope live refuses it; refused again\n",
+            [this](const std::vector<std::string>&, const Speaker&) { return readiness_.arm(); }});
+  desk.add({"disarm", "", [this](const std::vector<std::string>&, const Speaker&) { return readiness_.disarm(); }});
+  desk.add({"override", "override roll-call           you answer for a stage that is an ERROR\n",
+            [this](const std::vector<std::string>& words, const Speaker& who) {
+              return readiness_.override_stage(words.empty() ? "" : words[0], who.name);
+            }});
+  desk.add({"swap", "swap left-3; swap off        a node for a spare, while the show goes on\n",
+            [this](const std::vector<std::string>& words, const Speaker&) { return start_swap(words); }});
+}
+
+void ReadinessSurface::look(const DeskView& view, RunDesk& desk) {
+  judge_nodes(view);
+  follow_swap(desk);
+  keep_places(view, desk);
+  if (arms_ && !readiness_.armed() && readiness_.scope() == Scope::live) {
+    if (const auto armed = readiness_.arm()) desk.tell({RunEvent::Kind::note, armed.value()});
+  }
+  desk.bar(controller::kNotReady, readiness_.refuses_go());
+}
+
+void ReadinessSurface::judge_nodes(const DeskView& view) {
+  if (!view.roll_called) {
+    readiness_.tell(Stage::roll_call, State::waiting, "nodes are asked");
+    return;
+  }
+  std::vector<std::string> silent;
+  std::size_t silent_markers = 0;
+  std::size_t unverified = 0;
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
+    const NodeBoard::View node = board_.at(n);
+    if ((node.flags & NodeBoard::kUnverified) != 0) {
+      ++unverified;
+    } else if ((node.flags & (NodeBoard::kSilent | NodeBoard::kQuarantined)) != 0 ||
+               node.shown == NodeBoard::kNothingYet) {
+      silent.push_back(rig_.nodes[n].name);
+      silent_markers += rig_.nodes[n].channels.size();
+    }
+  }
+  const std::size_t proved = rig_.nodes.size() - silent.size() - unverified;
+  const std::string answered = fmt::format("{} nodes answer", rig_.nodes.size() - silent.size());
+  readiness_.tell(Stage::roll_call, silent.empty() ? State::success : State::error,
+                  silent.empty() ? answered : silence_text(silent_markers, markers_, silent));
+  readiness_.tell(Stage::plan_on_nodes, unverified > 0 ? State::warning : State::success,
+                  fmt::format("{} nodes confirm by sequence and check sum what this plan shows{}", proved,
+                              unverified > 0 ? fmt::format(", {} cannot be read back", unverified) : ""));
+  readiness_.tell(Stage::looks, silent.empty() ? State::success : State::warning,
+                  silent.empty() ? "uploaded" : "uploaded, not to who is silent");
+}
+
+Result<std::string> ReadinessSurface::start_swap(const std::vector<std::string>& words) {
+  const std::string name = words.empty() ? "" : words[0];
+  if (name == "off") {
+    if (!swap_ || swap_->over()) return input_error("swap: none is under way");
+    swap_->give_up();
+    return swap_->text();
+  }
+  const auto node = std::ranges::find(rig_.nodes, name, &Node::name);
+  if (node == rig_.nodes.end()) return input_error("swap: the rig has no node \"" + name + "\"");
+  swapped_ = static_cast<std::size_t>(node - rig_.nodes.begin());
+  swap_.emplace(node->name, node->address, rig_.buses[node->bus.at()].name);
+  return swap_->text();
+}
+
+void ReadinessSurface::follow_swap(RunDesk& desk) {
+  if (!swap_ || swap_->over()) return;
+  const NodeBoard::View node = board_.at(swapped_);
+  const bool silent = (node.flags & (NodeBoard::kSilent | NodeBoard::kQuarantined)) != 0;
+  if (swap_->look(silent, (node.flags & NodeBoard::kRight) != 0)) desk.tell({RunEvent::Kind::note, swap_->text()});
+}
+
+/// Where nobody is on the stage nobody has to be led from one place to another.
+void ReadinessSurface::keep_places(const DeskView& view, RunDesk& desk) {
+  if (readiness_.scope() != Scope::lights_only) return;
+  const auto& reset = view.show.reset;
+  const bool stands = view.show.phase == Phase::stands || view.show.phase == Phase::finished;
+  if (!stands || reset.state == ResetState::none || reset.id == placed_for_) return;
+  placed_for_ = reset.id;
+  desk.say("placed", {controller::GoSource::lines, "scope lights-only"});
+}
+
+}  // namespace footlight::app

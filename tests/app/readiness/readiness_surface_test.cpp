@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/readiness/readiness_surface.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/small_show.hpp"
+
+namespace footlight::app {
+namespace {
+
+using Stage = Readiness::Stage;
+using State = Readiness::State;
+using Phase = controller::Rehearsal::Phase;
+using ResetState = controller::Rehearsal::ResetState;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr NodeBoard::View kFine{0, NodeBoard::kRight};
+constexpr NodeBoard::View kSilent{0, NodeBoard::kSilent};
+
+class Ears final : public Surface {
+ public:
+  void look(const DeskView& view, RunDesk& /*desk*/) override { seen = view; }
+  void told(const RunEvent& event) override { heard.push_back(event.text); }
+  [[nodiscard]] bool listens() const override { return true; }
+  DeskView seen;
+  std::vector<std::string> heard;
+};
+
+/// Three nodes on one bus.
+class ReadinessSurfaceTest : public ::testing::Test {
+ protected:
+  ReadinessSurfaceTest() : small_(tests::random_show(6, 6, 4, 3, 2, 1)), desk_(small_.show, small_.plan), board_(3) {
+    rig_ = tests::lamps_everywhere(small_.show.stage.grid, {BusKind::serial}, 115'200, 12);
+    for (std::size_t n = 0; n < 3; ++n) board_.put(n, kFine);
+    desk_.add(ears_);
+    view_.roll_called = true;
+  }
+  void open(Scope scope, bool arms = false) {
+    readiness_.emplace(scope);
+    for (const Stage stage : {Stage::show, Stage::plan, Stage::buses, Stage::probes, Stage::time}) {
+      readiness_->tell(stage, State::success, "told");
+    }
+    surface_.emplace(*readiness_, rig_, board_, desk_, arms);
+    desk_.add(*surface_);
+  }
+  DeskWishes look() {
+    DeskWishes wishes = desk_.look(view_);
+    view_.show.barred = wishes.bars;
+    return wishes;
+  }
+  std::vector<std::string> say(const std::string& order) {
+    ears_.heard.clear();
+    desk_.say(order, {controller::GoSource::lines, "lines"});
+    return std::exchange(ears_.heard, {});
+  }
+
+  tests::SmallShow small_;
+  Rig rig_;
+  RunDesk desk_;
+  NodeBoard board_;
+  Ears ears_;
+  std::optional<Readiness> readiness_;
+  std::optional<ReadinessSurface> surface_;
+  DeskView view_;
+};
+
+TEST_F(ReadinessSurfaceTest, GoIsBarredFromTheFirstLookUntilItIsArmed) {
+  open(Scope::live);
+  view_.roll_called = false;
+  EXPECT_EQ(look().bars, controller::kNotReady);
+  EXPECT_THAT(say("arm"), ElementsAre("arm: roll-call WAITING: nodes are asked; plan-on-nodes OFF; looks OFF"));
+  view_.roll_called = true;
+  EXPECT_EQ(look().bars, controller::kNotReady);
+  (void)look();
+  EXPECT_THAT(ears_.seen.against, ElementsAre("nobody has said arm"));
+  EXPECT_THAT(say("arm"), ElementsAre("GO is armed"));
+  EXPECT_EQ(look().bars, 0U);
+  EXPECT_TRUE(ears_.seen.readiness.armed);
+  EXPECT_EQ(ears_.seen.readiness.scope, "live");
+  ASSERT_EQ(ears_.seen.readiness.stages.size(), Readiness::kStages);
+}
+
+TEST_F(ReadinessSurfaceTest, SilentNodesAreNamedAndOverridden) {
+  open(Scope::live);
+  board_.put(1, kSilent);
+  (void)look();
+  (void)look();
+  const std::string silent = "12 of 36 markers silent: " + rig_.nodes[1].name;
+  EXPECT_THAT(ears_.seen.against, ElementsAre("roll-call: " + silent));
+  EXPECT_THAT(say("override roll-call"), ElementsAre("roll-call is overridden by lines: " + silent));
+  EXPECT_THAT(say("arm"), ElementsAre("GO is armed"));
+}
+
+TEST_F(ReadinessSurfaceTest, NodesThatCannotBeReadBackAreAWarning) {
+  open(Scope::live);
+  board_.put(2, {NodeBoard::kNothingYet, NodeBoard::kUnverified});
+  (void)look();
+  const auto stages = readiness_->report();
+  EXPECT_EQ(stages[3].state, State::success);
+  EXPECT_EQ(stages[4].state, State::warning);
+  EXPECT_EQ(stages[4].text, "2 nodes confirm by sequence and check sum what this plan shows, 1 cannot be read back");
+}
+
+TEST_F(ReadinessSurfaceTest, WhereNobodyIsAtTheDeskItArmsItself) {
+  open(Scope::live, true);
+  EXPECT_EQ(look().bars, 0U);
+}
+
+TEST_F(ReadinessSurfaceTest, ASpareIsFollowedWhileTheShowGoesOn) {
+  open(Scope::rehearsal);
+  (void)look();
+  EXPECT_THAT(say("swap nobody"), ElementsAre("swap: the rig has no node \"nobody\""));
+  EXPECT_EQ(say("swap " + rig_.nodes[1].name).at(0),
+            "swap " + rig_.nodes[1].name + ", 1 of 2: unplug it from bus bus1. The others go on.");
+  board_.put(1, kSilent);
+  (void)look();
+  EXPECT_THAT(ears_.heard, ElementsAre(::testing::HasSubstr("2 of 2: give the spare address 2")));
+  board_.put(1, kFine);
+  (void)look();
+  EXPECT_THAT(ears_.heard, Contains(::testing::HasSubstr("the spare answers at address 2")));
+  EXPECT_THAT(say("swap off"), ElementsAre("swap: none is under way"));
+}
+
+TEST_F(ReadinessSurfaceTest, WithNobodyOnTheStageNobodyIsLedBack) {
+  open(Scope::lights_only);
+  view_.show.reset = {ResetState::wanted, 7, instant_at(4), instant_at(0)};
+  view_.show.phase = Phase::runs;
+  EXPECT_THAT(look().commands, IsEmpty());
+  view_.show.phase = Phase::stands;
+  const auto commands = look().commands;
+  ASSERT_EQ(commands.size(), 1U);
+  EXPECT_EQ(commands[0].kind, controller::Command::Kind::placed);
+  EXPECT_THAT(look().commands, IsEmpty()) << "said once";
+}
+
+TEST_F(ReadinessSurfaceTest, ARehearsalIsNotBarred) {
+  open(Scope::rehearsal);
+  view_.roll_called = false;
+  EXPECT_EQ(look().bars, 0U);
+  EXPECT_THAT(say("ready").at(0),
+              ::testing::StartsWith("scope rehearsal, GO is there\n  SUCCESS  show          told\n"));
+}
+
+}  // namespace
+}  // namespace footlight::app
