@@ -316,8 +316,12 @@ class Console {
   cost(): StageView["cost"] | undefined {
     return this.stage_?.cost;
   }
+
+  measure(): void {
+    this.stage_?.measure();
+  }
 }
 
 const page = new Console();
-Object.assign(globalThis, { footlight: { cost: () => page.cost() } });
+Object.assign(globalThis, { footlight: { cost: () => page.cost(), measure: () => page.measure() } });
 page.start();

@@ -59,6 +59,7 @@ export class Scene {
   private way_?: Crowd;
   private show_?: Show;
   private cells_many_ = 0;
+  private flagged_ = false; // there are wings or blocked cells
   private lamps_many_ = 0;
   private node_rows_ = 1;
   private layer_rows_ = 1;
@@ -86,6 +87,7 @@ export class Scene {
     this.free();
     this.show_ = show;
     this.cells_many_ = centres.length / 2;
+    this.flagged_ = show.stage.wings.length + show.stage.blocked.length > 0;
     this.centres_ = new ArrayTexture(gl, { internal: gl.RG32F, format: gl.RG, type: gl.FLOAT, a_texel: 2 }, centres, this.meter);
     this.looks_ = this.small(256, 1, gl.RGBA8, look_table(show));
     this.groups_ = this.small(256, 1, gl.RGBA8, group_table(show));
@@ -164,7 +166,8 @@ export class Scene {
     if (!this.centres_.fill()) return false;
     if (!this.plan_.marks.fill()) return false;
     const way_is_here = this.way_ ? this.way_.marks.fill() : true;
-    this.draw_cells(shown);
+    const cell_px = 0.5 * shown.view.focal_px * shown.ratio * this.show_.stage.pitch_m;
+    if (this.flagged_ || cell_px > 2 || shown.view.front) this.draw_cells(shown);
     if (shown.lamps && this.lamps_many_ > 0) this.draw_lamps(shown);
     const walking = shown.uses_way && this.way_ && way_is_here ? this.way_ : this.plan_;
     const legible = shown.view.focal_px * this.show_.stage.pitch_m >= kLegible_px || shown.view.front;

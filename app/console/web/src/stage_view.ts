@@ -2,12 +2,26 @@
 // The stage as it is seen and touched: camera, pointers, letters along the edges, who was picked.
 
 import { type Box, Camera } from "./camera";
-import { column_letters } from "./cell_name";
+import { EdgeLetters } from "./edge_letters";
 import { by_id, set_text, show_if } from "./dom";
 import type { Model } from "./model";
 import { type Palette, Scene } from "./scene";
 import { nearest, type Point } from "./tracks";
 import { say } from "./words";
+
+/** What frames cost since somebody began to measure. */
+export interface Cost {
+  frames: number;
+  draws: number;
+  bytes: number;
+  worst_draws: number;
+  worst_bytes: number; // of a frame alone
+  confirmed_bytes: number; // sent between frames: looks of the next switch, what nodes have confirmed
+}
+
+function no_cost(): Cost {
+  return { frames: 0, draws: 0, bytes: 0, worst_draws: 0, worst_bytes: 0, confirmed_bytes: 0 };
+}
 
 export interface Choices {
   people: boolean;
@@ -60,10 +74,10 @@ export class StageView {
   private readonly labels_ = by_id<HTMLCanvasElement>("labels");
   private readonly pointers_ = new Map<number, { x: number; y: number }>();
   private moved_ = false;
-  private labels_drawn_ = "";
+  private readonly letters_ = new EdgeLetters(this.labels_);
   private drawn_ = "";
   /** Frames and what they cost, for whoever measures. */
-  readonly cost = { frames: 0, draws: 0, bytes: 0, worst_draws: 0, worst_bytes: 0 };
+  cost: Cost = no_cost();
 
   constructor(private readonly model_: Model, private readonly picked_: (performer: number) => void) {
     this.scene = new Scene(this.floor_, palette());
@@ -89,7 +103,8 @@ export class StageView {
   }
 
   redraw(): void {
-    this.labels_drawn_ = this.drawn_ = "";
+    this.drawn_ = "";
+    this.letters_.redraw();
   }
 
   take_theme(): void {
@@ -188,6 +203,7 @@ export class StageView {
     const blink = this.choices.lamps ? Math.floor(now_ms / 100) : 0;
     const drawn = [time_ms, next_s, blink, planned, model.selected, resets, view.matrix.join(), Object.values(this.choices).join()].join("|");
     if (drawn !== this.drawn_ && !this.scene.busy()) {
+      this.cost.confirmed_bytes += this.scene.meter.take().bytes;
       const whole = this.scene.draw({
         view,
         size_px: { width: this.floor_.width, height: this.floor_.height },
@@ -205,9 +221,14 @@ export class StageView {
       this.drawn_ = whole ? drawn : "";
       this.count_cost();
     }
-    this.draw_labels();
+    this.letters_.draw(this.model_, this.camera);
     set_text(by_id("legend"), say(planned >= 0 ? "legend_planned" : "legend"));
     show_if(by_id("legend"), model.show !== undefined);
+  }
+
+  measure(): void {
+    this.scene.meter.take();
+    this.cost = no_cost();
   }
 
   private count_cost(): void {
@@ -217,81 +238,5 @@ export class StageView {
     this.cost.bytes += bytes;
     this.cost.worst_draws = Math.max(this.cost.worst_draws, draws);
     this.cost.worst_bytes = Math.max(this.cost.worst_bytes, bytes);
-  }
-
-  private draw_labels(): void {
-    const { show, centres } = this.model_;
-    const { camera } = this;
-    if (!show || centres.length === 0) return;
-    const drawn = [camera.view().matrix.join(), camera.size.width, camera.size.height, document.documentElement.dataset.theme, document.documentElement.lang].join("|");
-    if (drawn === this.labels_drawn_) return;
-    this.labels_drawn_ = drawn;
-    const context = this.labels_.getContext("2d");
-    if (!context) return;
-    const ratio = devicePixelRatio;
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, camera.size.width, camera.size.height);
-    context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--ink");
-    context.font = "12px sans-serif";
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    this.letter_columns(context);
-    this.letter_rows(context);
-    if (camera.front) return;
-    const { columns, rows, pitch_m } = show.stage;
-    const first = { x: centres[0], y: centres[1] };
-    const last = { x: centres[2 * (columns - 1)], y: centres[2 * (columns * rows - 1) + 1] };
-    const write = (text: string, at: Point, dx: number, dy: number, turn = 0) => {
-      const p = camera.project(at);
-      context.save();
-      context.translate(p.x + dx, p.y + dy);
-      context.rotate(turn);
-      context.fillText(text, 0, 0);
-      context.restore();
-    };
-    context.font = "bold 14px sans-serif";
-    write(say("audience"), { x: (first.x + last.x) / 2, y: first.y - 0.5 * pitch_m }, 0, 34);
-    context.font = "13px sans-serif";
-    write(say("stage_right"), { x: first.x - 0.5 * pitch_m, y: (first.y + last.y) / 2 }, -38, 0, -Math.PI / 2);
-    write(say("stage_left"), { x: last.x + 0.5 * pitch_m, y: (first.y + last.y) / 2 }, 38, 0, Math.PI / 2);
-  }
-
-  /** Letters where they stay in sight, as many as there is room for. */
-  private letter_columns(context: CanvasRenderingContext2D): void {
-    const { show, centres } = this.model_;
-    if (!show) return;
-    const { columns, rows, pitch_m } = show.stage;
-    const step = this.step(columns, (i) => centres[2 * i], true);
-    for (let column = 0; column < columns; column += step) {
-      for (const [row, side] of [[0, 1], [rows - 1, -1]]) {
-        if (this.camera.front && side < 0) continue;
-        const cell = row * columns + column;
-        const p = this.camera.project({ x: centres[2 * column], y: centres[2 * cell + 1] - side * 0.5 * pitch_m });
-        context.fillText(column_letters(column), p.x, Math.min(this.camera.size.height - 10, Math.max(10, p.y + side * 13)));
-      }
-    }
-  }
-
-  private letter_rows(context: CanvasRenderingContext2D): void {
-    const { show, centres } = this.model_;
-    if (!show) return;
-    const { columns, rows, pitch_m } = show.stage;
-    const step = this.step(rows, (i) => centres[2 * i * columns + 1], false);
-    for (let row = 0; row < rows; row += step) {
-      for (const [column, side] of [[0, -1], [columns - 1, 1]]) {
-        const cell = row * columns + column;
-        const p = this.camera.project({ x: centres[2 * cell] + side * 0.5 * pitch_m, y: centres[2 * cell + 1] });
-        context.fillText(String(row + 1), Math.min(this.camera.size.width - 14, Math.max(14, p.x + side * 16)), p.y);
-      }
-    }
-  }
-
-  /** So many apart that names do not touch. */
-  private step(many: number, place: (i: number) => number, across: boolean): number {
-    if (many < 2) return 1;
-    const a = this.camera.project(across ? { x: place(0), y: 0 } : { x: 0, y: place(0) });
-    const b = this.camera.project(across ? { x: place(many - 1), y: 0 } : { x: 0, y: place(many - 1) });
-    const apart = Math.hypot(b.x - a.x, b.y - a.y) / (many - 1);
-    return [1, 2, 5, 10, 20, 50, 100].find((step) => step * apart >= (across ? 24 : 16)) ?? 200;
   }
 }
