@@ -19,8 +19,9 @@ export interface View {
   front: boolean;
 }
 
+const kEdge_px = { x: 60, y: 48 }; // of letters around the stage
 const kEye_m = 1.7; // a person's
-const kRise = 0.35; // of the seats: height gained for each metre away
+const kRise = 0.5; // of the seats: height gained for each metre away
 
 /** What is looked at. Above: pixels a metre and the middle; in front: the same framing as a lens. */
 export class Camera {
@@ -44,7 +45,11 @@ export class Camera {
   scale(): number {
     const width = this.box_.high.x - this.box_.low.x;
     const height = this.box_.high.y - this.box_.low.y;
-    return this.zoom_ * Math.min(this.size.width / width, this.size.height / height);
+    return this.zoom_ * Math.min(this.room().width / width, this.room().height / height);
+  }
+
+  private room(): Size {
+    return { width: Math.max(1, this.size.width - 2 * kEdge_px.x), height: Math.max(1, this.size.height - 2 * kEdge_px.y) };
   }
 
   view(): View {
@@ -69,11 +74,23 @@ export class Camera {
     const ahead = unit({ x: aim.x - eye.x, y: aim.y - eye.y, z: aim.z - eye.z });
     const right = unit({ x: ahead.y, y: -ahead.x, z: 0 });
     const up = cross(right, ahead);
-    // The downstage corners are the widest.
-    const nearest = dot(ahead, { x: 0, y: this.box_.low.y - eye.y, z: -eye.z });
-    const focal = this.zoom_ * 0.94 * Math.min((this.size.width * nearest) / width, this.size.height * 1.1);
+    // As large as the floor and the heads on it fit; in the middle.
+    const seen = { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity };
+    for (const x of [this.box_.low.x, this.box_.high.x]) {
+      for (const [y, z] of [[this.box_.low.y, 0], [this.box_.high.y, 0], [this.box_.high.y, kEye_m]]) {
+        const from_eye = { x: x - eye.x, y: y - eye.y, z: z - eye.z };
+        const w = dot(ahead, from_eye);
+        seen.left = Math.min(seen.left, dot(right, from_eye) / w);
+        seen.right = Math.max(seen.right, dot(right, from_eye) / w);
+        seen.low = Math.min(seen.low, dot(up, from_eye) / w);
+        seen.high = Math.max(seen.high, dot(up, from_eye) / w);
+      }
+    }
+    const focal = this.zoom_ * Math.min(this.room().width / (seen.right - seen.left), this.room().height / (seen.high - seen.low));
     const a = (2 * focal) / this.size.width;
     const b = (2 * focal) / this.size.height;
+    const middle = this.zoom_ === 1 ? { x: (a * (seen.left + seen.right)) / 2, y: (b * (seen.low + seen.high)) / 2 } : { x: 0, y: 0 };
+    const nearest = dot(ahead, { x: 0, y: this.box_.low.y - eye.y, z: -eye.z });
     const far = nearest + 4 * depth + away;
     const near = 0.1 * nearest;
     const c = (far + near) / (far - near);
@@ -84,6 +101,11 @@ export class Camera {
       [c * ahead.x, c * ahead.y, c * ahead.z, d - c * dot(ahead, eye)],
       [ahead.x, ahead.y, ahead.z, -dot(ahead, eye)],
     ];
+    // The middle of what is seen is the middle of the picture.
+    for (let k = 0; k < 4; ++k) {
+      rows[0][k] -= middle.x * rows[3][k];
+      rows[1][k] -= middle.y * rows[3][k];
+    }
     const matrix = new Float32Array(16);
     for (let r = 0; r < 4; ++r) for (let k = 0; k < 4; ++k) matrix[4 * k + r] = rows[r][k];
     return { matrix, focal_px: focal, front: true };

@@ -31,7 +31,7 @@ export function card_of(state: State, cues: Cue[]): Card {
   const card: Card = {
     phase: held ? "holds" : state.phase,
     title: held ? say("holds") : say(title[state.phase] ?? "stands"),
-    cue: active ? say(held ? "in_cue" : "runs_cue", { cue: `${active.number} ${active.name}` }) : "",
+    cue: active ? say(held ? "in_cue" : "runs_cue", { number: active.number, name: active.name }) : "",
     standby: standby ? standby.number : state.phase === "finished" ? "" : say("the_end"),
     standby_name: standby ? standby.name : "",
     left_s: undefined,

@@ -204,6 +204,7 @@ class Console {
       kept("theme", root.dataset.theme);
       this.stage_?.take_theme();
     });
+    by_id("open_side").addEventListener("click", () => document.body.classList.toggle("side"));
     by_id("show_help").addEventListener("click", () => by_id<HTMLDialogElement>("help").showModal());
     by_id("help_close").addEventListener("click", () => by_id<HTMLDialogElement>("help").close());
     by_id("person_close").addEventListener("click", () => this.selection_.take(-1));

@@ -199,7 +199,7 @@ void main() {
   bool chosen = (what.y & 1u) != 0u;
   if (ghost == 1) {
     if (r < 1.0 - max(0.22, 1.2 / px)) discard;
-    colour = vec4(mix(cloth, vec3(0.75), 0.35), 0.65);
+    colour = vec4(mix(cloth, selected, 0.35), 0.65);
     return;
   }
   vec3 c = cloth;

@@ -33,7 +33,7 @@ export interface Choices {
 const kWaysAhead_ms = 8000;
 const kPick_px = 18;
 
-/** Around all cells, with room for letters. */
+/** Around all cells. */
 export function box_of(centres: Float32Array, pitch_m: number): Box {
   const box = { low: { x: Infinity, y: Infinity }, high: { x: -Infinity, y: -Infinity } };
   for (let i = 0; i < centres.length; i += 2) {
@@ -42,8 +42,8 @@ export function box_of(centres: Float32Array, pitch_m: number): Box {
     box.high.x = Math.max(box.high.x, centres[i]);
     box.high.y = Math.max(box.high.y, centres[i + 1]);
   }
-  const margin = 0.6 * pitch_m + 0.045 * Math.max(box.high.x - box.low.x, box.high.y - box.low.y);
-  return { low: { x: box.low.x - margin, y: box.low.y - 1.4 * margin }, high: { x: box.high.x + margin, y: box.high.y + 1.4 * margin } };
+  const half = 0.5 * pitch_m;
+  return { low: { x: box.low.x - half, y: box.low.y - half }, high: { x: box.high.x + half, y: box.high.y + half } };
 }
 
 function palette(): Palette {
