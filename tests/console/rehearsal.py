@@ -206,7 +206,7 @@ def make_cases(Stage, program, pictures, figures):
             page.picture("11-picked")
             page.key("/")
             page.type("right")
-            page.until("document.querySelectorAll('#found button').length === 6", "a group")
+            page.until("[...document.querySelectorAll('#found button')].filter(b => b.textContent.endsWith(' · right')).length === 6", "a group")
             page.key("Escape")
             self.assertEqual(self.run_.answers(), [], "Esc in a field is no HOLD")
             page.key("Escape")

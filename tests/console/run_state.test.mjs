@@ -6,7 +6,7 @@ import { kDrawnSilent, kDrawnWrong, kLayers, Layers, Nodes, switch_at } from "..
 import { Presses } from "../../app/console/web/src/keys.ts";
 import { centres_of, decode_looks, decode_nodes, decode_plan } from "../../app/console/web/src/protocol.ts";
 import { ShowClock } from "../../app/console/web/src/show_clock.ts";
-import { fact_text } from "../../app/console/web/src/side_panels.ts";
+import { fact_text, is_empty } from "../../app/console/web/src/facts.ts";
 import { clock_text, count_text, countdown_text, timecode_text } from "../../app/console/web/src/time_text.ts";
 import { count_at, span_of } from "../../app/console/web/src/timeline.ts";
 
@@ -141,7 +141,8 @@ test("the card tells what runs, what GO would do, and how long it lasts", () => 
   assert.equal(said({ phase: "runs", cue: "1", standby: "2", ends_in_s: 7 }), "runs | Runs | cue 1 Line | 2 | 7 | s until it");
   assert.equal(said({ phase: "runs", cue: "2", standby: "3", ends_in_s: 7 }), "runs | Runs | cue 2 Ring | 3 | 7 | s, then by itself");
   assert.equal(said({ phase: "runs", cue: "3", standby: null, ends_in_s: 7, holds_at_end: true }), "runs | Runs | cue 3 Arrow | the end | 7 | s until the end | HOLD at the end of the set");
-  assert.equal(said({ cue: "2", standby: "3" }), "holds | HOLD | in cue 2 Ring | 3");
+  assert.equal(said({ cue: "2", standby: "3" }), "holds | HOLD | in cue 2 Ring | 3 | GO goes on with cue 2");
+  assert.equal(said({ cue: "2", standby: "3", against: ["spotter left"] }), "holds | HOLD | in cue 2 Ring | 3 | HELD BY spotter left");
   assert.equal(said({ phase: "finished", standby: null }), "finished | The show is over");
   assert.equal(said({ phase: "a new one" }), "a new one | Stands | 1");
 });
@@ -156,4 +157,5 @@ test("a reset move is asked for in words, and so is its impossibility", () => {
 test("facts that this page has no place for are told in words", () => {
   assert.equal(fact_text({ source: "ltc", locked: true, lost_s: null }), "source ltc, locked true, lost s –");
   assert.equal(fact_text(["a", { b: 1 }]), "a, b 1");
+  assert.deepEqual([[], null, "", 0, false].map(is_empty), [true, true, true, false, false]);
 });

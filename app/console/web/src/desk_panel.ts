@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is read from two metres: phase, standby, count-down, refusals. And the keys below it.
 
+import { fact_text } from "./facts";
 import { by_id, set_flag, set_text, show_if } from "./dom";
 import type { Model } from "./model";
 import type { Cue, State } from "./protocol";
@@ -36,7 +37,7 @@ export function card_of(state: State, cues: Cue[]): Card {
     standby_name: standby ? standby.name : "",
     left_s: undefined,
     left_to: "",
-    notice: notice_of(state),
+    notice: notice_of(state, held ? active : undefined),
   };
   if (state.goes_in_s !== null && (state.phase === "counts-in" || state.phase === "resets")) {
     card.left_s = state.goes_in_s;
@@ -49,7 +50,8 @@ export function card_of(state: State, cues: Cue[]): Card {
   return card;
 }
 
-function notice_of(state: State): string {
+function notice_of(state: State, held: Cue | undefined): string {
+  if (Array.isArray(state.against) && state.against.length > 0) return say("against", { names: state.against.map(fact_text).join(", ") });
   const stands = state.phase === "stands" || state.phase === "finished";
   const to = clock_text(state.reset.to_s ?? 0);
   if (stands && state.reset.state === "being-planned") return say("reset_planned");
@@ -60,7 +62,7 @@ function notice_of(state: State): string {
   }
   if (state.holds_at_end) return say("holds_at_end");
   if (state.loop) return say("loops", { from: clock_text(state.loop.from_s), to: clock_text(state.loop.to_s) });
-  return "";
+  return held ? say("goes_on", { number: held.number }) : "";
 }
 
 export class DeskPanel {

@@ -112,8 +112,8 @@ class Console {
       if (which === undefined) this.take_way(undefined);
       else void this.program_.bytes("api/way.bin").then((bytes) => this.resets_ === which && this.take_way(bytes));
     }
-    const into_s = typeof state.reset_s === "number" ? state.reset_s : state.goes_in_s !== null ? -state.goes_in_s : undefined;
-    if (into_s !== undefined) this.model_.way_clock.tell({ position_s: into_s, rate: state.phase === "resets" ? 1 : 0, came_ms: performance.now() });
+    const into_s = state.reset.at_s;
+    if (into_s !== undefined) this.model_.way_clock.tell({ position_s: into_s, rate: state.rate ?? 0, came_ms: performance.now() });
   }
 
   private take_way(bytes: ArrayBuffer | undefined): void {

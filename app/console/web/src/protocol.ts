@@ -61,7 +61,9 @@ export interface State {
   most_percent: number;
   holds_at_end: boolean;
   loop: { from_s: number; to_s: number } | null;
-  reset: { state: string; from_s?: number; to_s?: number };
+  reset: { state: string; from_s?: number; to_s?: number; at_s?: number };
+  against?: unknown; // who bars people from walking
+  gates?: unknown;
   switch: number;
   ready: boolean;
   buses: { name: string; nodes: number; unconfirmed: number }[];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beside the stage: health of buses and nodes, who is connected, the log; above it: alarms and readiness.
 
+import { fact_text, is_empty } from "./facts";
 import { by_id, make, set_facts, set_flag, set_text, show_if } from "./dom";
 import type { Model } from "./model";
 import { kNothing, kQuarantined, kRight, kSilent, kUnverified, type RunEvent } from "./protocol";
@@ -10,15 +11,7 @@ const kMostListed = 200;
 const kMostLogged = 500;
 /** What has a place of its own on the page; anything else that a state tells is listed by its name. */
 const kKnownFacts = new Set(["phase", "position_s", "rate", "section", "measure", "count", "cue", "standby", "goes_in_s", "ends_in_s", "tempo_percent",
-  "most_percent", "holds_at_end", "loop", "reset", "switch", "ready", "buses", "readiness", "time", "scope", "next_switch", "reset_s"]);
-
-/** A fact of a state that this page has no place for, in words. Pure. */
-export function fact_text(value: unknown): string {
-  if (value === null || value === undefined) return "–";
-  if (Array.isArray(value)) return value.map(fact_text).join(", ");
-  if (typeof value === "object") return Object.entries(value).map(([name, one]) => `${name.replace(/_/g, " ")} ${fact_text(one)}`).join(", ");
-  return String(value);
-}
+  "most_percent", "holds_at_end", "loop", "reset", "switch", "ready", "buses", "readiness", "time", "scope", "next_switch", "against"]);
 
 function time_of(unix_ms: number): string {
   return new Date(unix_ms).toLocaleTimeString("en-GB");
@@ -79,7 +72,7 @@ export class SidePanels {
     set_text(words, this.floor_words(bad, figures.unverified));
     this.draw_buses();
     this.draw_wrong_nodes();
-    const rest = Object.entries(state).filter(([name]) => !kKnownFacts.has(name));
+    const rest = Object.entries(state).filter(([name, value]) => !kKnownFacts.has(name) && !is_empty(value));
     show_if(by_id("more_title"), rest.length > 0);
     set_facts(by_id("more"), rest.map(([name, value]) => [is_word(name) ? say(name) : name.replace(/_/g, " "), fact_text(value)]));
     const scope = state.scope;
