@@ -72,6 +72,7 @@ def make_cases(Stage, program, pictures, figures):
             return page
 
         def lead(self, page):
+            page.until("document.getElementById('take_seat').textContent === 'Take the desk' && document.getElementById('link').textContent.endsWith(' ms')", "the connection")
             page.click("take_seat")
             page.until_text("seat", "You lead")
 
@@ -182,7 +183,6 @@ def make_cases(Stage, program, pictures, figures):
             page.until(f"document.getElementById('tempo').textContent === '{min(200, int(most))} %'", "the capped tempo")
             page.picture("10-loop-and-tempo")
             page.key("l")
-            page.until_text("notice", "")
             page.until("document.getElementById('loop').getAttribute('aria-pressed') === 'false'", "no loop")
 
         def test_who_is_clicked_is_told_with_place_next_place_and_marker(self):

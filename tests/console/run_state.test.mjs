@@ -93,6 +93,10 @@ test("a node is drawn right only when it is confirmed or cannot be", () => {
   assert.equal(nodes.figures().unverified, 1, "a run beyond the rig is of another rig");
   nodes.take({ all: true, runs: [] });
   assert.equal(nodes.figures().wrong, 6);
+  const early = new Nodes();
+  early.take({ all: true, runs: [{ first: 0, many: 3, index: 7, flags: 1 }] });
+  early.fit(4);
+  assert.deepEqual(early.figures(), { right: 3, wrong: 1, silent: 0, quarantined: 0, unverified: 0 }, "what is told before the rig is known stays");
 });
 
 test("layers keep what is used, and the oldest of the others makes room", () => {
@@ -128,7 +132,7 @@ test("one press is one GO: a held key repeats in vain until it is up", () => {
   assert.ok(presses.press("Space", false));
 });
 
-const cues = [{ number: "1", name: "Line", gap_after_s: null }, { number: "2", name: "Ring", gap_after_s: 0 }, { number: "3", name: "Arrow", gap_after_s: null }];
+const cues = [{ number: "1", name: "Line", to_s: 5, gap_after_s: null }, { number: "2", name: "Ring", to_s: 12, gap_after_s: 0 }, { number: "3", name: "Arrow", to_s: 20, gap_after_s: null }];
 const state = (more) => ({ phase: "stands", position_s: 0, cue: null, standby: "1", goes_in_s: null, ends_in_s: null, holds_at_end: false, loop: null, reset: { state: "none" }, ...more });
 const said = (more) => {
   const { phase, title, cue, standby, left_s, left_to, notice } = card_of(state(more), cues);
@@ -151,6 +155,7 @@ test("a reset move is asked for in words, and so is its impossibility", () => {
   assert.match(said({ reset: { state: "ready", from_s: 0, to_s: 12.5 } }), /GO lights the reset move to 0:12.5/);
   assert.match(said({ position_s: 3, reset: { state: "ready", from_s: 4, to_s: 12.5 } }), /GO: people walk on/);
   assert.match(said({ reset: { state: "being-planned", from_s: 0, to_s: 1 } }), /being planned/);
+  assert.equal(said({ phase: "resets", cue: "3", standby: null, reset: { state: "ready", from_s: 15, to_s: 5 } }), "resets | Reset move | 2 | people walk to where they stand at 0:05.0");
   assert.match(said({ reset: { state: "impossible", from_s: 0, to_s: 1 } }), /NO RESET MOVE/);
 });
 

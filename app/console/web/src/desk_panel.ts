@@ -25,14 +25,16 @@ export interface Card {
 export function card_of(state: State, cues: Cue[]): Card {
   const find = (number: string | null) => cues.find((cue) => cue.number === number);
   const active = find(state.cue);
-  const standby = find(state.standby);
+  // After a reset move the show is elsewhere.
+  const resets = state.phase === "resets" || state.phase === "reset-held";
+  const standby = resets ? cues.find((cue) => (state.reset.to_s ?? 0) < cue.to_s - 1e-3) : find(state.standby);
   const stands = state.phase === "stands";
   const held = stands && active !== undefined;
   const title: Record<string, Word> = { "counts-in": "counts_in", runs: "runs", resets: "resets", "reset-held": "reset_held", finished: "finished" };
   const card: Card = {
     phase: held ? "holds" : state.phase,
     title: held ? say("holds") : say(title[state.phase] ?? "stands"),
-    cue: active ? say(held ? "in_cue" : "runs_cue", { number: active.number, name: active.name }) : "",
+    cue: active && !resets ? say(held ? "in_cue" : "runs_cue", { number: active.number, name: active.name }) : "",
     standby: standby ? standby.number : state.phase === "finished" ? "" : say("the_end"),
     standby_name: standby ? standby.name : "",
     left_s: undefined,
@@ -50,9 +52,19 @@ export function card_of(state: State, cues: Cue[]): Card {
   return card;
 }
 
+function waits(state: State): boolean {
+  return state.phase === "stands" || state.phase === "finished";
+}
+
+/** What has to be done first, then what is set. */
 function notice_of(state: State, held: Cue | undefined): string {
+  const loop = state.loop ? say("loops", { from: clock_text(state.loop.from_s), to: clock_text(state.loop.to_s) }) : "";
+  return [to_do(state, held), loop].filter(Boolean).join(" · ");
+}
+
+function to_do(state: State, held: Cue | undefined): string {
   if (Array.isArray(state.against) && state.against.length > 0) return say("against", { names: state.against.map(fact_text).join(", ") });
-  const stands = state.phase === "stands" || state.phase === "finished";
+  const stands = waits(state);
   const to = clock_text(state.reset.to_s ?? 0);
   if (stands && state.reset.state === "being-planned") return say("reset_planned");
   if (stands && state.reset.state === "impossible") return say("reset_impossible");
@@ -60,8 +72,9 @@ function notice_of(state: State, held: Cue | undefined): string {
     const here = Math.abs(state.position_s - (state.reset.from_s ?? 0)) < 1e-3;
     return say(here ? "reset_ready" : "reset_walks_on", { time: to });
   }
+  if (state.phase === "resets") return say("reset_runs", { time: to });
+  if (state.phase === "reset-held") return say("reset_goes_on", { time: to });
   if (state.holds_at_end) return say("holds_at_end");
-  if (state.loop) return say("loops", { from: clock_text(state.loop.from_s), to: clock_text(state.loop.to_s) });
   return held ? say("goes_on", { number: held.number }) : "";
 }
 
@@ -105,7 +118,7 @@ export class DeskPanel {
   }
 
   private draw_keys(state: State): void {
-    const asked = state.reset.state !== "none";
+    const asked = state.reset.state !== "none" && waits(state);
     show_if(by_id("placed"), asked);
     show_if(by_id("cancel"), asked);
     set_text(by_id("hold_end").children[0], say(state.holds_at_end ? "run_on" : "hold_end"));

@@ -48,14 +48,35 @@ export class Layers {
   }
 }
 
+const kMostNodes = 1 << 20;
+
 /** The nodes of the rig as last told. */
 export class Nodes {
-  readonly index: Uint32Array; // of the switch
-  readonly flags: Uint8Array;
+  index = new Uint32Array(); // of the switch
+  flags = new Uint8Array();
+  private of_a_show_ = false;
 
-  constructor(readonly many: number) {
+  /** @param many none: nobody knows the rig yet, and it grows with what is told */
+  constructor(many?: number) {
+    if (many !== undefined) this.fit(many);
+  }
+
+  get many(): number {
+    return this.flags.length;
+  }
+
+  /** The rig has so many; what was told of them stays. */
+  fit(many: number): void {
+    this.resize(many);
+    this.of_a_show_ = true;
+  }
+
+  private resize(many: number): void {
+    const { index, flags } = this;
     this.index = new Uint32Array(many).fill(kNothing);
     this.flags = new Uint8Array(many);
+    this.index.set(index.subarray(0, many));
+    this.flags.set(flags.subarray(0, many));
   }
 
   take(frame: { all: boolean; runs: NodeRun[] }): void {
@@ -64,9 +85,11 @@ export class Nodes {
       this.flags.fill(0);
     }
     for (const run of frame.runs) {
-      if (run.first + run.many > this.many) continue; // of a rig that is not ours yet
-      this.index.fill(run.index, run.first, run.first + run.many);
-      this.flags.fill(run.flags, run.first, run.first + run.many);
+      const end = run.first + run.many;
+      if (end > this.many && !this.of_a_show_ && end <= kMostNodes) this.resize(end);
+      if (end > this.many) continue; // of a rig that is not ours
+      this.index.fill(run.index, run.first, end);
+      this.flags.fill(run.flags, run.first, end);
     }
   }
 

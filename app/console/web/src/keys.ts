@@ -47,6 +47,10 @@ const kOrders: Record<string, string> = { b: "back", t: "top", s: "step", c: "ca
 export function listen_to_keys(desk: Desk): void {
   const presses = new Presses();
   addEventListener("blur", () => presses.forget());
+  // A button that a hand has pressed does not keep the keys: Enter would press it again.
+  addEventListener("click", (event) => {
+    if (event.detail > 0 && event.target instanceof Element) event.target.closest("button")?.blur();
+  });
   addEventListener("keyup", (event) => {
     presses.release(event.code);
     // Nor does it press the button that has the focus.

@@ -149,9 +149,7 @@ class Console {
     this.fetching_ = true;
     try {
       const { show, tracks, centres } = await this.program_.show();
-      const nodes = this.model_.nodes;
       this.model_.take_show(show, tracks, centres);
-      if (nodes.many === show.rig.length) this.model_.nodes = nodes; // what was told before the show was here
       this.looks_.clear();
       this.build();
     } catch (error) {

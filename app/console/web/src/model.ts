@@ -19,7 +19,7 @@ export class Model {
   state?: State;
   readonly clock = new ShowClock();
   state_came_ms = 0;
-  nodes = new Nodes(0);
+  readonly nodes = new Nodes();
   readonly layers = new Layers();
   /** The reset move, while there is one. */
   way?: Tracks;
@@ -42,7 +42,7 @@ export class Model {
     this.show = show;
     this.tracks = tracks;
     this.centres = centres;
-    this.nodes = new Nodes(show.rig.length);
+    this.nodes.fit(show.rig.length);
     this.layers.clear();
     this.switch_times_ = show.switch_at.map((one) => one.time_s);
     if (this.selected >= show.performers.length) this.selected = -1;

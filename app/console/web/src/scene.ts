@@ -203,6 +203,7 @@ export class Scene {
     gl.uniform1f(this.lamps_.at("least_px"), 1.5 * shown.ratio);
     gl.uniform1f(this.lamps_.at("seconds"), shown.seconds);
     gl.uniform3fv(this.lamps_.at("wrong"), this.palette_.wrong);
+    gl.uniform3fv(this.lamps_.at("ink"), this.palette_.ink);
     gl.bindVertexArray(this.lamp_vao_);
     this.instances(this.lamps_many_);
   }

@@ -118,7 +118,9 @@ void main() {
   px = max(half_m * focal / p.w, least_px);
   bool dark = look.r + look.g + look.b == 0.0 && state == 0u;
   at = corner;
-  gl_Position = dark ? vec4(2, 2, 2, 1) : p + vec4(corner * px * 2.0 / viewport * p.w, 0, 0);
+  // On the floor; from far as a point that can still be seen.
+  vec4 lies = half_m * focal / p.w > least_px ? view * vec4(centre(int(lamp.x)) + corner * half_m, 0, 1) : p + vec4(corner * px * 2.0 / viewport * p.w, 0, 0);
+  gl_Position = dark ? vec4(2, 2, 2, 1) : lies;
 }`;
 
 export const lamps_fragment = `${kHead}
@@ -126,7 +128,7 @@ in vec2 at;
 flat in vec3 light;
 flat in uint state;
 in float px;
-uniform vec3 wrong;
+uniform vec3 wrong, ink;
 out vec4 colour;
 void main() {
   float edge = max(abs(at.x), abs(at.y));
@@ -135,7 +137,7 @@ void main() {
   if (state != 0u) {     // a cross over what it was last known to show; thicker for a silent one
     float width = (state & 1u) != 0u ? 0.24 : 0.13;
     float cross_m = min(abs(at.x - at.y), abs(at.x + at.y));
-    lamp = cross_m < width + 0.7 / px || edge > 0.82 ? vec4(wrong, 1) : vec4(light, 0.35);
+    lamp = edge > 0.82 ? vec4(wrong, 1) : cross_m < width + 0.7 / px ? vec4(ink, 0.9) : vec4(light, 0.35);
   }
   colour = lamp;
 }`;
@@ -172,6 +174,7 @@ void main() {
   cloth = texelFetch(groups, ivec2(int(who.x), 0), 0).rgb;
   gl_Position = p + vec4(reach * 2.0 / viewport * p.w, 0, 0);
   if (ghost == 1) {
+    if (radius_m * focal / p.w > least_px) gl_Position = view * vec4(here + corner * radius_m, 0, 1);
     vec2 now = between(mark_before(first, int(track.y), now_ms), last, now_ms);
     if (distance(now, here) < 0.05 * radius_m) gl_Position = vec4(2, 2, 2, 1);
   }

@@ -46,6 +46,8 @@ const kCatalogue = {
   reset_planned: ["the reset move is being planned", "正在计算复位走位"],
   reset_ready: ["GO lights the reset move to {time}. Are people where they should be?", "按「走」点亮到 {time} 的复位走位。人都站对了吗？"],
   reset_walks_on: ["GO: people walk on to the end of the set, then the reset move to {time}", "按「走」：走完本段，再复位到 {time}"],
+  reset_runs: ["people walk to where they stand at {time}", "人走到 {time} 的位置"],
+  reset_goes_on: ["GO goes on with the way to {time}", "按「走」继续走到 {time} 的位置"],
   reset_impossible: ["NO RESET MOVE: send people by word of mouth, then “All are in place”", "没有复位走位：请口头安排，然后按「人已到位」"],
   loops: ["loop {from} – {to}", "循环 {from} – {to}"],
   refused: ["{order} refused: {why}", "{order} 被拒绝：{why}"],
