@@ -46,7 +46,7 @@ class Console {
   private readonly orders_ = new Orders(this.model_, this.link_, this.desk_);
   private readonly selection_ = new Selection(this.model_, () => this.stage_);
   private readonly cues_ = new CueList(this.model_, (number) => this.orders_.say(`jump cue ${number}`));
-  private readonly side_ = new SidePanels(this.model_, (n) => this.link_.say({ acknowledge: n }));
+  private readonly side_ = new SidePanels(this.model_, (n) => this.link_.say({ acknowledge: n }), (order) => this.orders_.say(order));
   private readonly timeline_ = new Timeline(this.model_, () => undefined);
   private readonly find_ = new FindPanel(this.model_, (found) => this.selection_.find(found));
   private stage_?: StageView;

@@ -57,6 +57,14 @@ export class Model {
     this.clock.tell({ position_s: state.position_s, rate: resets ? 0 : rate, came_ms: now_ms });
   }
 
+  /** Stages before the first GO; a program that knows none arms it. */
+  readiness(): { scope?: string; armed: boolean; stages: { name?: string; state?: string; text?: string }[] } {
+    const told = this.state?.readiness;
+    if (typeof told !== "object" || told === null) return { armed: true, stages: [] };
+    const { scope, armed, stages } = told as { scope?: unknown; armed?: unknown; stages?: unknown };
+    return { scope: typeof scope === "string" ? scope : undefined, armed: armed !== false, stages: Array.isArray(stages) ? stages : [] };
+  }
+
   leads(): boolean {
     return this.holder !== null && this.holder.id === this.me;
   }

@@ -11,7 +11,12 @@ const kSlowest_percent = 25;
 const kFastest_percent = 200;
 const kTempoStep_percent = 5;
 
+const kUntilTold_ms = 1000; // in which the program answers
+
 export class Orders {
+  private wanted_percent_ = 0;
+  private wanted_at_ms_ = -Infinity;
+
   constructor(private readonly model_: Model, private readonly link_: Link, private readonly desk_: DeskPanel) {}
 
   /** HOLD needs no seat; what cannot be sent is refused where it was said. */
@@ -27,9 +32,14 @@ export class Orders {
     field.focus();
   }
 
+  /** Several presses add up, also before the program has answered the first. */
   tempo(by_percent: number): void {
-    const percent = (this.model_.state?.tempo_percent ?? 100) + by_percent;
-    this.say(`tempo ${Math.min(kFastest_percent, Math.max(kSlowest_percent, percent))}`);
+    const now = performance.now();
+    const told = this.model_.state?.tempo_percent ?? 100;
+    const from = now - this.wanted_at_ms_ < kUntilTold_ms ? this.wanted_percent_ : told;
+    this.wanted_percent_ = Math.min(kFastest_percent, Math.max(kSlowest_percent, from + by_percent));
+    this.wanted_at_ms_ = now;
+    this.say(`tempo ${this.wanted_percent_}`);
   }
 
   /** Of a key or button whose meaning depends on the state. */

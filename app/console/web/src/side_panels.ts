@@ -20,7 +20,7 @@ function time_of(unix_ms: number): string {
 export class SidePanels {
   private logged_ = 0;
 
-  constructor(private readonly model_: Model, private readonly acknowledge_: (n: number) => void) {
+  constructor(private readonly model_: Model, private readonly acknowledge_: (n: number) => void, private readonly order_: (order: string) => void) {
     const tabs = ["health", "find", "log"];
     for (const name of tabs) by_id(`tab_${name}`).addEventListener("click", () => this.open(name));
   }
@@ -45,21 +45,24 @@ export class SidePanels {
   }
 
   draw_stages(): void {
-    const told = this.model_.state?.readiness;
-    const stages = Array.isArray(told) ? (told as { stage?: string; name?: string; state?: string; text?: string }[]) : [];
+    const { stages, armed } = this.model_.readiness();
     const part = by_id("stages");
     show_if(part, stages.length > 0);
-    const now = JSON.stringify(stages);
+    const now = JSON.stringify([stages, armed]);
     if (part.dataset.now === now) return;
     part.dataset.now = now;
     const signs: Record<string, string> = { success: "✓", error: "✗", warning: "!", waiting: "…", next: "›", skipped: "–", off: "·" };
     part.replaceChildren(...stages.map((stage) => {
       const state = String(stage.state ?? "").toLowerCase();
-      const one = make("span", `${signs[state] ?? "?"} ${stage.stage ?? stage.name ?? ""}: ${String(stage.state ?? "")}${stage.text ? ` (${stage.text})` : ""}`);
+      const one = make("span", `${signs[state] ?? "?"} ${stage.name ?? ""}: ${String(stage.state ?? "")}${stage.text && state !== "success" ? ` (${stage.text})` : ""}`);
       if (/^[a-z]+$/.test(state)) one.className = state;
       one.setAttribute("role", "listitem");
       return one;
     }));
+    if (armed || stages.length === 0) return;
+    const arm = make("button", say("arm"));
+    arm.addEventListener("click", () => this.order_("arm"));
+    part.append(arm);
   }
 
   draw_health(): void {
@@ -75,9 +78,9 @@ export class SidePanels {
     const rest = Object.entries(state).filter(([name, value]) => !kKnownFacts.has(name) && !is_empty(value));
     show_if(by_id("more_title"), rest.length > 0);
     set_facts(by_id("more"), rest.map(([name, value]) => [is_word(name) ? say(name) : name.replace(/_/g, " "), fact_text(value)]));
-    const scope = state.scope;
+    const { scope, armed } = this.model_.readiness();
     show_if(by_id("scope"), scope !== undefined);
-    if (scope !== undefined) set_text(by_id("scope"), say("scope", { scope: fact_text(scope) }));
+    set_text(by_id("scope"), [say("scope", { scope: scope ?? "" }), armed ? "" : say("not_armed")].filter(Boolean).join(" · "));
   }
 
   /** "12 of 3,290 markers not right: n1 (left 3), ..." */

@@ -131,6 +131,8 @@ const kCatalogue = {
   locked: ["locked", "已锁定"],
   at_most: ["at most {most} %", "最多 {most} %"],
   scrub_name: ["Look at another time; nothing is sent", "查看其他时刻；不会发出"],
+  arm: ["Arm GO", "启用「走」"],
+  not_armed: ["GO is not armed", "「走」未就绪"],
   scope: ["scope: {scope}", "权限：{scope}"],
   markers_word: ["{n} markers on {nodes} nodes", "{n} 个灯，{nodes} 个节点"],
   language_name: ["中文", "English"],
