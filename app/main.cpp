@@ -17,6 +17,7 @@
 #include "app/diff_command.hpp"
 #include "app/dryrun_command.hpp"
 #include "app/export_command.hpp"
+#include "app/freeze_command.hpp"
 #include "app/import_command.hpp"
 #include "app/journal_command.hpp"
 #include "app/measure_command.hpp"
@@ -38,7 +39,7 @@ constexpr AddCommand kCommands[] = {
     add_new_command,    add_check_command,  add_plan_command,       add_measure_command, add_why_command,
     add_export_command, add_sheets_command, add_preview_command,    add_report_command,  add_diff_command,
     add_dryrun_command, add_dark_command,   add_devices_command,    add_sim_command,     add_run_command,
-    add_bundle_command, add_import_command, add_commission_command, add_journal_command,
+    add_bundle_command, add_import_command, add_commission_command, add_journal_command, add_freeze_command,
 };
 
 constexpr const char* kFooter =

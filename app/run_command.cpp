@@ -22,9 +22,11 @@
 #include "app/plan_step.hpp"
 #include "app/readiness/preflight.hpp"
 #include "app/readiness/readiness_surface.hpp"
+#include "app/rehearsing/rehearsing.hpp"
 #include "app/remote/remote_control.hpp"
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
+#include "app/sound/heard_count_in.hpp"
 #include "app/state_folder.hpp"
 #include "app/surfaces/prompt_desk.hpp"
 #include "app/surviving/supervisor.hpp"
@@ -54,6 +56,8 @@ struct Options {
   SurvivingOptions surviving;
   RemoteOptions remote;
   ReadyOptions ready;
+  RehearsingOptions rehearsing;
+  SoundOptions sound;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -116,6 +120,7 @@ class Traces {
   void write(const char* name, const std::string& text) {
     if (auto written = config::write_file(folder_ / name, text); !written) session_.note(written.error().message);
   }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path ring() const { return folder_ / "wires"; }
 
  private:
@@ -137,6 +142,20 @@ void tell_limits(Session& session, const Show& show, const Plan& plan,
 std::string how_it_ended(const Result<LiveReport>& report) {
   if (report) return report->finished ? kOver : kQuit;
   return report.error().kind == ErrorKind::interrupted ? "interrupted" : report.error().message;
+}
+
+/// Nothing without --sound, and where there is no loudspeaker: that costs a note.
+Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& options, const Show& show,
+                                            const Clock& clock) {
+  if (options.sound.to.empty()) return std::unique_ptr<HeardCountIn>();
+  auto sound = HeardCountIn::open(show, options.sound, options.count_in(), clock);
+  if (sound) {
+    if (!(*sound)->lacks().empty()) session.note((*sound)->lacks());
+    return sound;
+  }
+  if (sound.error().kind == ErrorKind::input) return std::move(sound).error();
+  session.note(sound.error().message + ": the count-in is not heard (--sound FILE.wav writes it)");
+  return std::unique_ptr<HeardCountIn>();
 }
 
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
@@ -163,8 +182,16 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
+  const SteadyClock sound_clock;
+  auto sound = heard(session, options, show, sound_clock);
+  if (!sound) return std::move(sound).error();
+  if (*sound) {
+    desk.add(**sound);
+    live.rehearsal.before_count_in = options.sound.ahead();
+  }
   live.stop = session.stop();
   live.wire_log = wire_log;
+  Rehearsing rehearsing(show, planned.plan(), desk, traces.folder(), options.rehearsing);
   live.desk = [&](const DeskView& view) { return desk.look(view); };
   live.answered = [&](const Answer& answer) { desk.answered(answer); };
   live.wait = [&](Duration most) { desk.wait(most); };
@@ -176,6 +203,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
     return plan_reset_way(show, planned.plan(), from, to, std::max(1.0, options.count_in()), abandoned);
   };
   live.limits = [&](const std::vector<controller::TempoLimit>& limits) {
+    rehearsing.set_limits(limits);
     tell_limits(session, show, planned.plan(), limits);
     if (*console) (*console)->take_limits(limits);
   };
@@ -195,6 +223,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   auto report = live_run(show, planned.plan(), rig, ports, live);
   surviving.journal().close(how_it_ended(report));
   session.clear_line();
+  for (const std::string& trouble : rehearsing.finish(report ? &*report : nullptr)) session.note(trouble);
   return report;
 }
 
@@ -300,6 +329,8 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
   options->surviving.add_options(*command);
   options->remote.add_options(*command);
   options->ready.add_options(*command);
+  options->rehearsing.add_options(*command);
+  options->sound.add_options(*command);
   session.add_options(*command, true);
   command->footer(
       "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"

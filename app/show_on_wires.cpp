@@ -31,6 +31,15 @@ std::vector<Duration> notices_of(const ShowOnWires& show, const ShowOnWires& wir
   return notices;
 }
 
+/// Besides dark, that the markers of every bus know.
+std::size_t most_looks(const ShowOnWires& wires) {
+  std::size_t most = 254;
+  for (const auto& driver : wires.drivers) {
+    most = std::min(most, static_cast<std::size_t>(std::max(0, driver->capabilities().looks)));
+  }
+  return most;
+}
+
 }  // namespace
 
 Duration run_length(const std::vector<controller::CuePlay>& plays) {
@@ -40,7 +49,7 @@ Duration run_length(const std::vector<controller::CuePlay>& plays) {
 }
 
 Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& plan, const Rig& rig,
-                                                  std::vector<std::unique_ptr<drivers::Driver>> drivers) {
+                                                  std::vector<std::unique_ptr<drivers::Driver>> drivers, bool mutes) {
   if (!plan.valid) return refusal("the plan is not valid and never lights a marker");
   auto out = std::make_unique<ShowOnWires>();
   out->drivers = std::move(drivers);
@@ -48,6 +57,7 @@ Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& 
   auto schedule = controller::build_schedule(show, plan, rig, out->drivers);
   if (!schedule) return std::move(schedule).error();
   out->schedule = std::move(schedule).value();
+  if (mutes && !show.groups.empty()) out->schedule->add_quiet(most_looks(*out));
   for (const auto& driver : out->drivers) out->latch_ahead = std::max(out->latch_ahead, driver->latch_time());
   out->opening = std::max(roll_call(rig), controller::opening_time(*out->schedule, rig, out->drivers));
   const auto switch_on = controller::switch_on_of(rig);
@@ -69,6 +79,7 @@ Result<std::unique_ptr<ShowOnWires>> put_beside(const Show& show, const Plan& pl
   out->plays = controller::cue_plays(show, plan);
   auto schedule = controller::build_schedule(show, plan, rig, wires.drivers);
   if (!schedule) return std::move(schedule).error();
+  if (before.numbers().quiet != kDark) schedule->add_quiet(most_looks(wires));
   int most = std::numeric_limits<int>::max();
   for (const auto& driver : wires.drivers) most = std::min(most, driver->capabilities().looks);
   schedule = controller::numbered_after(std::move(schedule).value(), before, most);

@@ -33,9 +33,11 @@ struct ShowOnWires {
 /// Show time that the cues play, with the shortest stand where the show waits for GO.
 [[nodiscard]] Duration run_length(const std::vector<controller::CuePlay>& plays);
 
+/// @param mutes groups may be muted while it plays: one look more, where the markers take it
 /// Errors: a plan that is not valid and whatever build_schedule refuses.
 [[nodiscard]] Result<std::unique_ptr<ShowOnWires>> put_on_wires(const Show& show, const Plan& plan, const Rig& rig,
-                                                                std::vector<std::unique_ptr<drivers::Driver>> drivers);
+                                                                std::vector<std::unique_ptr<drivers::Driver>> drivers,
+                                                                bool mutes = false);
 
 /// Lets no cue run faster than its walks are proved for and its buses can follow. @param wires drivers of `show`
 std::vector<controller::TempoLimit> limit_tempo(const Show& content, const Plan& plan, const Rig& rig,

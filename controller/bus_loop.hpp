@@ -79,8 +79,8 @@ class BusLoop final : private drivers::EventSink {
   /// are done.
   [[nodiscard]] bool settled() const noexcept;
   [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }
-  /// Switch that has been latched last.
-  [[nodiscard]] std::size_t lit() const noexcept { return current_; }
+  /// Switch that has been latched last, whoever is muted.
+  [[nodiscard]] std::size_t lit() const noexcept { return schedule_->plain(current_); }
   /// Nodes that have not answered for so long that they are only asked from time to time.
   [[nodiscard]] std::vector<NodeIndex> quarantined() const;
   /// Nodes that are not confirmed to show what they should now, those in quarantine among them. O(nodes)

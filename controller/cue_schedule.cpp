@@ -95,6 +95,40 @@ class Compiler {
     return move;
   }
 
+  /// @param muted of each performer
+  MutedLamps compile_muted(const CueSchedule& schedule, const std::vector<bool>& muted) {
+    pattern_ = schedule.numbers().pattern;
+    const LookIndex quiet = schedule.numbers().quiet;
+    const std::size_t row = nodes_ * kChannelsPerNode;
+    MutedLamps out;
+    out.table.reserve(crowd_.moments().size() * row);
+    std::vector<CellUse> concerned;
+    for (std::size_t k = 0; k < crowd_.moments().size(); ++k) {
+      light(k);
+      uses_of(doing_, lit_.size(), concerned, muted);
+      const std::vector<bool>& reserve = crowd_.reserve_at(k);
+      for (std::size_t n = 0; n < nodes_; ++n) {
+        const auto looks = schedule.looks_of(k, NodeIndex::of(n));
+        out.table.insert(out.table.end(), looks.begin(), looks.end());
+      }
+      LookIndex* const here = out.table.data() + k * row;
+      for (const LampAt& lamp : lamps_) {
+        const Lamp& all = lamp_[lamp.cell.at()];
+        const Lamp own = lamp_of(concerned[lamp.cell.at()], reserve[lamp.cell.at()]);
+        // What is as it was keeps its number, also one that a supply has dimmed.
+        if (own == all) continue;
+        here[lamp.slot] = own.role ? number_like(schedule.numbers(), entry(own)) : quiet;
+      }
+      for (std::size_t w = 0; w < worn_.size(); ++w) {
+        const bool is_muted = muted[worn_[w].performer.at()];
+        LookIndex& look = here[worn_[w].node.at() * kChannelsPerNode + static_cast<std::size_t>(worn_[w].channel)];
+        if (is_muted && look != kDark) look = quiet;
+        out.contents.push_back(is_muted ? drivers::WearableContent{} : schedule.content(k, w));
+      }
+    }
+    return out;
+  }
+
  private:
   [[nodiscard]] std::vector<CellIndex> near(CellIndex cell) const {
     std::vector<CellIndex> list;
@@ -254,17 +288,20 @@ void CueSchedule::set_contents(WearableContents contents) {
 }
 
 void CueSchedule::renumber(std::vector<Look> looks, std::span<const LookIndex> now, std::uint8_t plan_byte) {
-  FL_CHECK(resets_->count.load() == 0 && looks.size() <= kMostLooks && now.size() == looks_.size() && now[0] == kDark);
+  FL_CHECK(resets_->count.load() == 0 && muted_->count.load() == 0);
+  FL_CHECK(looks.size() <= kMostLooks && now.size() == looks_.size() && now[0] == kDark);
   looks_ = std::move(looks);
   plan_byte_ = plan_byte;
   for (LookIndex& look : table_) look = now[look];
   for (LookIndex& look : numbers_.of_entry) look = now[look];
+  numbers_.quiet = now[numbers_.quiet];
 }
 
 std::vector<bool> CueSchedule::numbers_shown() const {
   std::vector<bool> shown(looks_.size(), false);
   for (const LookIndex look : table_) shown[look] = true;
   for (const LookIndex look : numbers_.of_entry) shown[look] = true;
+  shown[numbers_.quiet] = true;
   return shown;
 }
 
@@ -273,6 +310,32 @@ bool CueSchedule::has(std::size_t k) const {
   const std::size_t slot = (k - switches_.size()) / kMostResetSwitches;
   if (slot >= resets_->count.load(std::memory_order_acquire)) return false;
   return (k - switches_.size()) % kMostResetSwitches < resets_->moves[slot]->switches.size();
+}
+
+void CueSchedule::add_quiet(std::size_t most) {
+  if (looks_.size() >= kMostLooks || looks_.size() > most) return;
+  numbers_.quiet = static_cast<LookIndex>(looks_.size());
+  looks_.push_back(kQuiet);
+}
+
+bool CueSchedule::is_muted_set(std::size_t first) const {
+  if (first < first_muted() || (first - first_muted()) % muted_stride() != 0) return false;
+  return (first - first_muted()) / muted_stride() < muted_->count.load(std::memory_order_acquire);
+}
+
+const MutedLamps& CueSchedule::muted_of(std::size_t k) const {
+  const std::size_t slot = (k - first_muted()) / muted_stride();
+  FL_CHECK(slot < muted_->count.load(std::memory_order_acquire));
+  return *muted_->lamps[slot];
+}
+
+std::optional<std::size_t> CueSchedule::add(MutedLamps lamps) {
+  const std::size_t slot = muted_->count.load(std::memory_order_relaxed);
+  if (slot == kMostMuted) return std::nullopt;
+  FL_CHECK(lamps.table.size() == table_.size() && lamps.contents.size() == contents_.table.size());
+  muted_->lamps[slot] = std::make_unique<const MutedLamps>(std::move(lamps));
+  muted_->count.store(slot + 1, std::memory_order_release);
+  return first_muted() + slot * muted_stride();
 }
 
 const ResetMove& CueSchedule::reset_of(std::size_t k) const {
@@ -295,14 +358,16 @@ std::optional<std::size_t> CueSchedule::add(ResetMove move) {
 std::span<const LookIndex> CueSchedule::looks_of(std::size_t k, NodeIndex node) const {
   FL_CHECK(node.at() < nodes_);
   const bool own = k < switches_.size();
-  const std::size_t row = own ? k : (k - switches_.size()) % kMostResetSwitches;
-  const std::span<const LookIndex> table(own ? table_ : reset_of(k).table);
+  const bool muted = k >= first_muted();
+  const std::size_t row = own ? k : muted ? plain(k) : (k - switches_.size()) % kMostResetSwitches;
+  const std::span<const LookIndex> table(own ? table_ : muted ? muted_of(k).table : reset_of(k).table);
   FL_CHECK((row + 1) * nodes_ * kChannelsPerNode <= table.size());
   return table.subspan((row * nodes_ + node.at()) * kChannelsPerNode, kChannelsPerNode);
 }
 
 const drivers::WearableContent& CueSchedule::content(std::size_t k, std::size_t w) const {
   if (k < switches_.size()) return contents_.at(k, w);
+  if (k >= first_muted()) return muted_of(k).contents.at(plain(k) * contents_.worn.size() + w);
   return reset_of(k).contents.at((k - switches_.size()) % kMostResetSwitches * contents_.worn.size() + w);
 }
 
@@ -348,6 +413,17 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);
   if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show);
   return schedule;
+}
+
+MutedLamps build_muted(const Show& show, const Plan& plan, const Rig& rig, const CueSchedule& schedule,
+                       const std::vector<bool>& muted) {
+  FL_CHECK(schedule.numbers().quiet != kDark && muted.size() == show.groups.size() + 1);
+  std::vector<bool> people(plan.tracks.size());
+  for (std::size_t p = 0; p < people.size(); ++p) {
+    const auto group = p < show.performers.size() ? show.performers[p].group : std::nullopt;
+    people[p] = muted[group ? group->at() : show.groups.size()];
+  }
+  return Compiler(show, plan, rig, cue_plays(show, plan)).compile_muted(schedule, people);
 }
 
 ResetMove build_reset(const Show& show, const Plan& move, const Rig& rig, const CueSchedule& schedule, bool stand) {

@@ -49,10 +49,20 @@ struct ResetMove {
   }
 };
 
+/// Lamps of the whole show while some groups are muted (docs/looks.md, "Solo and mute").
+struct MutedLamps {
+  std::vector<LookIndex> table{};                    ///< switches x nodes x 32
+  std::vector<drivers::WearableContent> contents{};  ///< switches x worn
+};
+
+/// What a lamp shows whose people are muted: steady, dim, and not dark.
+inline constexpr Look kQuiet{{0, 0, 255}, Effect::steady, 40};
+
 /// Whose lamp has which number, so that what is compiled later speaks the same language.
 struct LookNumbers {
   std::vector<std::uint8_t> pattern;  ///< of each performer
   std::vector<LookIndex> of_entry;    ///< of each look that the show could have (LookBook); kDark: it is not used
+  LookIndex quiet = kDark;            ///< kQuiet; kDark: nobody can be muted
 };
 
 /// What every lamp and wearable shows from switch to switch: a function of show time alone.
@@ -61,6 +71,8 @@ class CueSchedule {
   /// Reset moves that one schedule takes, and switches that each may have.
   static constexpr std::size_t kMostResets = 4096;
   static constexpr std::size_t kMostResetSwitches = 1024;
+  /// Sets of muted groups that one schedule takes.
+  static constexpr std::size_t kMostMuted = 200;
 
   CueSchedule(std::vector<Look> looks, std::vector<Switch> switches, std::size_t nodes, std::vector<LookIndex> table,
               std::uint8_t plan_byte, LampConfusion confusion);
@@ -81,6 +93,18 @@ class CueSchedule {
   [[nodiscard]] bool has(std::size_t k) const;
   /// The move that switch `k` belongs to, k >= switches().size(). Lives as long as the schedule. Any thread.
   [[nodiscard]] const ResetMove& reset_of(std::size_t k) const;
+  /// Takes the lamps of a set of muted groups, as `add` does. @return the number of its first switch: switch k of the
+  /// show is k more; its sequence on the wire is another one than that of k
+  std::optional<std::size_t> add(MutedLamps lamps);
+  /// Whether `add` has given this number. Any thread.
+  [[nodiscard]] bool is_muted_set(std::size_t first) const;
+  /// The same switch with nobody muted.
+  [[nodiscard]] std::size_t plain(std::size_t k) const {
+    return k < first_muted() ? k : (k - first_muted()) % muted_stride();
+  }
+  /// Makes room for kQuiet, where the looks of the show leave some. Before anything borrows the schedule.
+  /// @param most looks besides dark that every marker of the rig knows
+  void add_quiet(std::size_t most);
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
   /// What wearables tell besides their looks; empty unless it was set.
@@ -103,6 +127,15 @@ class CueSchedule {
     std::array<Slot, kMostResets> moves;
     std::atomic<std::size_t> count{0};
   };
+  struct Muted {
+    std::array<std::unique_ptr<const MutedLamps>, kMostMuted> lamps;
+    std::atomic<std::size_t> count{0};
+  };
+  /// Latch sequences go round after 240 switches: seven more make the numbers of each set others.
+  [[nodiscard]] static constexpr std::size_t apart(std::size_t k) { return (k + 239) / 240 * 240 + 7; }
+  [[nodiscard]] std::size_t first_muted() const { return apart(switches_.size() + kMostResets * kMostResetSwitches); }
+  [[nodiscard]] std::size_t muted_stride() const { return apart(switches_.size()); }
+  [[nodiscard]] const MutedLamps& muted_of(std::size_t k) const;
 
   std::vector<Look> looks_;
   std::vector<Switch> switches_;
@@ -113,6 +146,7 @@ class CueSchedule {
   WearableContents contents_;
   LookNumbers numbers_;
   std::unique_ptr<Resets> resets_ = std::make_unique<Resets>();
+  std::unique_ptr<Muted> muted_ = std::make_unique<Muted>();
   std::vector<SupplyLoad> supplies_;
 };
 
@@ -133,6 +167,12 @@ class CueSchedule {
 /// Complexity: O(switches x (performers + cells + markers)). Deterministic.
 [[nodiscard]] Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                                  const std::vector<std::unique_ptr<drivers::Driver>>& drivers);
+
+/// The lamps of the show while people of some groups are muted: docs/looks.md, "Solo and mute".
+/// @param muted one for each group of the show, and last those who are in none
+/// Complexity: as build_schedule without its patterns.
+[[nodiscard]] MutedLamps build_muted(const Show& show, const Plan& plan, const Rig& rig, const CueSchedule& schedule,
+                                     const std::vector<bool>& muted);
 
 /// Compiles a way back with the looks and patterns of the show's schedule; a look that the show never needs is replaced
 /// by the most similar one that it has (another pattern, then another role of the same colour).

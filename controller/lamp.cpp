@@ -17,9 +17,11 @@ Lamp wearable_of(PerformerIndex performer, const Doing& doing, bool reserve) {
   return reserve ? Lamp{} : Lamp{LampRole::here, performer};
 }
 
-void uses_of(std::span<const Doing> doing, std::size_t cells, std::vector<CellUse>& uses) {
+void uses_of(std::span<const Doing> doing, std::size_t cells, std::vector<CellUse>& uses,
+             const std::vector<bool>& without) {
   uses.assign(cells, CellUse{});
   for (std::size_t p = 0; p < doing.size(); ++p) {
+    if (!without.empty() && without[p]) continue;
     const Doing& d = doing[p];
     const auto performer = PerformerIndex::of(p);
     if (!d.goal) uses[d.cell.at()].stands = performer;

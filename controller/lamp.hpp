@@ -36,7 +36,9 @@ struct Lamp {
 [[nodiscard]] Lamp wearable_of(PerformerIndex performer, const Doing& doing, bool reserve);
 
 /// Everybody's doings seen from the floor. @param uses resized to `cells` and overwritten
-void uses_of(std::span<const Doing> doing, std::size_t cells, std::vector<CellUse>& uses);
+/// @param without people who are left out; empty: nobody is
+void uses_of(std::span<const Doing> doing, std::size_t cells, std::vector<CellUse>& uses,
+             const std::vector<bool>& without = {});
 
 /// A role's look where the show does not choose one.
 [[nodiscard]] LookChoice default_choice(LampRole role);

@@ -132,6 +132,10 @@ void Rehearsal::step(Instant now) noexcept {
     while (rows_lit_ < rows() && row_at(rows_lit_) <= now) ++rows_lit_;
     if (row_at(rows()) <= now) arrive();
   }
+  if (mutes_at_ <= now) {
+    muting_ = muting_next_;
+    mutes_at_ = kNever;
+  }
   if (runs()) return;
   hold_.reset();
   count_.reset();
@@ -140,11 +144,31 @@ void Rehearsal::step(Instant now) noexcept {
 }
 
 Instant Rehearsal::next_event() const noexcept {
-  if (!resets()) return engine_.next_event();
-  return move_held_ ? kNever : row_at(rows_lit_);
+  const Instant moves = resets() ? (move_held_ ? kNever : row_at(rows_lit_)) : engine_.next_event();
+  return std::min(moves, mutes_at_);
 }
 
 BusTarget Rehearsal::target() const noexcept {
+  BusTarget target = target_of_all();
+  const std::size_t lit = target.current;
+  target.current = muted(lit, muting_);
+  if (mutes_at_ < target.next_at && muted(lit, muting_next_) != target.current) {
+    // All buses together, before the next switch of the show.
+    target.next = muted(lit, muting_next_);
+    target.next_at = mutes_at_;
+  } else {
+    target.next = muted(target.next, muting_);
+  }
+  return target;
+}
+
+/// A reset move concerns everybody: its lamps are never muted.
+std::size_t Rehearsal::muted(std::size_t k, std::size_t first) const noexcept {
+  return first > 0 && k < engine_.schedule().switches().size() ? first + k : k;
+}
+
+/// With nobody muted.
+BusTarget Rehearsal::target_of_all() const noexcept {
   BusTarget target = engine_.target();
   const Instant at = goes_at();
   if (at != kNever && !resets()) {
@@ -181,7 +205,8 @@ Instant Rehearsal::goes_at() const noexcept {
 Duration Rehearsal::count_in() const noexcept {
   const double count = tempo_.count_at(engine_.position());
   const double span_s = to_seconds(tempo_.span(count, settings_.count_in_counts));
-  return seconds(span_s * 100 / engine_.percent());
+  if (settings_.count_in_counts == 0) return {};
+  return settings_.before_count_in + seconds(span_s * 100 / engine_.percent());
 }
 
 // ---- commands
@@ -220,6 +245,8 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
         return placed();
       case Command::Kind::cancel:
         return cancel();
+      case Command::Kind::mute:
+        return mute(command.first, now);
       case Command::Kind::acknowledge:
         guard_.acknowledge();
         return Outcome::done;
@@ -263,7 +290,7 @@ Outcome Rehearsal::go_on(Instant now) noexcept {
   if (runs()) return Outcome::cue_runs;
   if (stands_for_reset()) return start_reset(now);
   if (engine_.frozen()) {
-    const BusTarget next = engine_.target();
+    const BusTarget next = target();
     engine_.resume(now, now + std::max(count_in(), notice_(next.current, next.next)));
     return reset_.state == ResetState::none ? Outcome::goes_on : Outcome::walks_on;
   }
@@ -335,7 +362,7 @@ Outcome Rehearsal::step_count(Instant now) noexcept {
   if (!engine_.frozen()) {
     (void)engine_.go(now);
   } else {
-    const BusTarget next = engine_.target();
+    const BusTarget next = target();
     engine_.resume(now, now + notice_(next.current, next.next));
   }
   return Outcome::done;
@@ -397,7 +424,7 @@ Outcome Rehearsal::answer_reset(const Command& command) noexcept {
 Outcome Rehearsal::start_reset(Instant now) noexcept {
   if (reset_.state == ResetState::wanted) return Outcome::being_planned;
   if (reset_.state == ResetState::impossible) return Outcome::no_way;
-  const Duration notice = notice_(engine_.target().current, target().next);
+  const Duration notice = notice_(target().current, target().next);
   move_ = planned_;
   rows_lit_ = first_row();
   move_held_.reset();
@@ -411,6 +438,14 @@ void Rehearsal::arrive() noexcept {
   move_ = planned_ = nullptr;
   move_held_.reset();
   reset_ = {};
+}
+
+Outcome Rehearsal::mute(std::size_t first, Instant now) noexcept {
+  if (first > 0 && !engine_.schedule().is_muted_set(first)) return Outcome::done;  // of a plan that is over
+  const std::size_t lit = target_of_all().current;
+  muting_next_ = first;
+  mutes_at_ = now + notice_(muted(lit, muting_), muted(lit, first));
+  return Outcome::done;
 }
 
 Outcome Rehearsal::placed() noexcept {

@@ -36,6 +36,7 @@ struct Command {
     follow,            ///< the source of time, again
     unfollow,          ///< the show goes by its own clock
     join,              ///< asks for the way to where people next stand after the source of time
+    mute,              ///< lamps of the show as from switch `first` on (CueSchedule::add); 0: nobody is muted
   };
   Kind kind = Kind::go;
   GoSource source = GoSource::lines;
@@ -109,6 +110,7 @@ class Rehearsal {
   struct Settings {
     double count_in_counts = 4;
     Duration least_between_gos = milliseconds(1000);
+    Duration before_count_in{};  ///< for whoever tells the first count and has to know of it
   };
   /// Where a show was when another program led it last.
   struct Whereabouts {
@@ -187,6 +189,9 @@ class Rehearsal {
   Outcome placed() noexcept;
   Outcome cancel() noexcept;
   Outcome answer_reset(const Command& command) noexcept;
+  Outcome mute(std::size_t first, Instant now) noexcept;
+  [[nodiscard]] BusTarget target_of_all() const noexcept;
+  [[nodiscard]] std::size_t muted(std::size_t k, std::size_t first) const noexcept;
   Outcome start_reset(Instant now) noexcept;
   void arrive() noexcept;
   void aim() noexcept;
@@ -224,6 +229,10 @@ class Rehearsal {
   Instant move_at_{};                  ///< clock time at which it begins or began
   std::size_t rows_lit_ = 0;           ///< of it
   std::optional<Duration> move_held_;  ///< it stands so far from its beginning
+  // First switch of the lamps that are lit, and of those that will be at `mutes_at_`; 0: nobody is muted.
+  std::size_t muting_ = 0;
+  std::size_t muting_next_ = 0;
+  Instant mutes_at_ = kNever;
 };
 
 }  // namespace footlight::controller

@@ -284,6 +284,7 @@ Result<CueSchedule> with_dimmed(const CueSchedule& schedule, const Rig& rig, con
   CueSchedule out(std::move(looks), schedule.switches(), rig.nodes.size(), std::move(table), schedule.plan_byte(),
                   schedule.confusion());
   out.set_contents(schedule.contents());
+  out.set_numbers(schedule.numbers());  // its looks are the first ones here
   return out;
 }
 

@@ -18,7 +18,8 @@ struct TempoLimit {
 };
 
 /// For each cue the tempo at which somebody would walk faster than the limit that the plan was proved for, or a bus
-/// could no longer carry a switch in time with its reserve: at most kFastest_percent, never below 100. Ways and
+/// could no longer carry a switch in time with its reserve, or a lamp would light up more than three times in a second
+/// (flash_rate.hpp): at most kFastest_percent, never below 100. Ways and
 /// clearances do not depend on the tempo; how late anybody may be does, as 1 / tempo.
 /// @param needs as bus_needs of the same schedule says
 /// Complexity: O(marks + needs)

@@ -13,6 +13,7 @@
 #include "app/live/bare_timer.hpp"
 #include "app/live/bus_thread.hpp"
 #include "app/live/cue_thread.hpp"
+#include "app/live/mutings.hpp"
 #include "app/live/plays_in_turn.hpp"
 #include "app/live/reset_moves.hpp"
 #include "app/live/shared_target.hpp"
@@ -46,12 +47,14 @@ class LiveRun {
   LiveRun(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires,
           const std::vector<drivers::Port>& ports, const LiveOptions& options)
       : show_(show),
+        plan_(plan),
         rig_(rig),
         wires_(wires),
         options_(options),
         plans_(wires, show.tempo, controller::Stands(plan), options.rehearsal),
         cue_(plans_.rehearsal(), target_, clock_) {
     resets_.emplace(show, rig, *wires.schedule, options.plan_way);
+    mutings_.emplace(show, plan, rig, *wires.schedule);
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
       ports_.push_back(drivers::reference(ports[b]));
       auto handle = [port = ports_.back()] {
@@ -100,6 +103,7 @@ class LiveRun {
   void report_floor(LiveReport& report) const;
 
   const Show& show_;
+  const Plan& plan_;
   const Rig& rig_;
   ShowOnWires& wires_;
   std::vector<drivers::PortReference> ports_;
@@ -109,7 +113,9 @@ class LiveRun {
   PlaysInTurn plans_;
   CueThread cue_;
   std::optional<ResetMoves> resets_;
-  LiveReport over_;  ///< figures of the switches of plans before
+  std::optional<Mutings> mutings_;
+  std::optional<std::vector<bool>> muted_;  ///< that is wanted
+  LiveReport over_;                         ///< figures of the switches of plans before
   std::vector<std::unique_ptr<BusThread>> threads_;
   Lateness wake_;
   bool roll_called_ = false;
@@ -197,11 +203,14 @@ void LiveRun::change_plan() {
         switches, [&](std::size_t b) { return &times(b); }, over_);
   };
   if (!plans_.look(*options_.changes, state_, cue_, threads_, over)) return;
-  resets_.reset();  // it may be reading the show
+  resets_.reset();  // they may be reading the show
+  mutings_.reset();
   options_.changes->taken(plans_.show());
   resets_.emplace(show_, rig_, *plans_.show().schedule, options_.plan_way);
+  mutings_.emplace(show_, plan_, rig_, *plans_.show().schedule);
+  if (muted_) mutings_->want(*muted_);
   way_ = plans_.way();
-  told_ = cue_.state().target.current;
+  told_ = plans_.show().schedule->plain(cue_.state().target.current);
 }
 
 void LiveRun::listen_to_the_desk() {
@@ -211,9 +220,14 @@ void LiveRun::listen_to_the_desk() {
     buses_[b].quarantined = threads_[b]->quarantined();
     buses_[b].counters = threads_[b]->counters();
   }
-  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*plans_.show().schedule, way_});
+  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*plans_.show().schedule, way_, clock_.now()});
   cue_.set_bars(wishes.bars);
   for (const controller::Command& command : wishes.commands) tell(command);
+  if (wishes.muted) {
+    muted_ = wishes.muted;
+    mutings_->want(*muted_);
+  }
+  if (const auto command = mutings_->look()) tell(*command);
   ended_ = wishes.ends;
   nobody_ = wishes.nobody;
 }
@@ -239,13 +253,14 @@ const controller::Switch& LiveRun::switch_of(std::size_t k) const {
 }
 
 void LiveRun::say_moment(const BusTarget& target) {
-  if (target.current == told_) return;
+  const std::size_t lit = plans_.show().schedule->plain(target.current);
+  if (lit == told_) return;
   const auto& switches = plans_.show().schedule->switches();
   // What was passed since the last look is told, too; a reset move and a jump are places of their own.
-  const bool on = told_ < target.current && target.current < switches.size();
-  std::size_t k = on ? told_ + 1 : target.current;
-  told_ = target.current;
-  for (; options_.moment && k <= target.current; ++k) {
+  const bool on = told_ < lit && lit < switches.size();
+  std::size_t k = on ? told_ + 1 : lit;
+  told_ = lit;
+  for (; options_.moment && k <= lit; ++k) {
     const controller::Switch& now = switch_of(k);
     const bool reset = k >= switches.size();
     const std::string cue = now.cue && !reset ? "cue " + plans_.show().plays[*now.cue].cue.number.to_text() : "";
@@ -372,7 +387,7 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
     if (!driver) return std::move(driver).error();
     drivers.push_back(std::move(driver).value());
   }
-  auto wires = put_on_wires(show, plan, rig, std::move(drivers));
+  auto wires = put_on_wires(show, plan, rig, std::move(drivers), true);
   if (!wires) return std::move(wires).error();
   const auto limits = limit_tempo(show, plan, rig, **wires, **wires);
   if (options.limits) options.limits(limits);

@@ -99,6 +99,14 @@ struct ReadinessView {
   std::vector<Stage> stages{};
 };
 
+/// What stopping the show at once would do, and going on from there (docs/looks.md).
+struct FreezeView {
+  bool known = false;              ///< false: it is still being judged
+  std::uint32_t pairs = 0;         ///< of people who may touch when the show is frozen now
+  Instant none_from = kNever;      ///< show time from which on there is none
+  std::uint32_t resume_pairs = 0;  ///< who may touch when it goes on after a freeze here
+};
+
 /// What the desk sees.
 struct DeskView {
   ShowState show;
@@ -106,18 +114,26 @@ struct DeskView {
   std::vector<BusView> buses;
   const controller::CueSchedule* schedule = nullptr;  ///< what lamps show; not to be kept
   std::shared_ptr<const Plan> way{};                  ///< the reset move that was planned last; null: none was
+  Instant now{};                                      ///< clock; `show.at` is when the cue thread said so last
   // Filled in by the desk.
   std::vector<GateView> gates{};
   ReadinessView readiness{};
   std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"
+  /// Of each cue, not to be kept; null: nobody asked.
+  const std::vector<controller::TempoLimit>* limits = nullptr;
+  FreezeView freeze{};
+  std::string standby_notes{};  ///< of the cue that the next GO starts
+  std::string muted{};          ///< groups whose lamps do not guide now: "kids, trumpets"
 };
 
 /// What the desk wants.
 struct DeskWishes {
   std::vector<controller::Command> commands{};
   controller::Bars bars = 0;  ///< what stands against walking, from now on
-  bool ends = false;          ///< the run
-  bool nobody = false;        ///< is left to want anything
+  /// Who is muted from now on: one for each group of the show, last those who are in none. None: as before.
+  std::optional<std::vector<bool>> muted{};
+  bool ends = false;    ///< the run
+  bool nobody = false;  ///< is left to want anything
 };
 
 struct LiveOptions {

@@ -17,10 +17,13 @@ constexpr Duration kStateLines = milliseconds(500);  // while nothing but the po
 constexpr Duration kRefusedFor = milliseconds(2500);
 constexpr int kTempoStep_percent = 5;
 constexpr char kEscape = 27;
+constexpr char kUp = 17;  // what no key sends
+constexpr char kDown = 18;
 
 constexpr std::string_view kKeys =
     "Space GO   h HOLD (freeze)   e HOLD at the end of the set (again: run on)   b back   t top   j jump   l loop\n"
-    "+ - tempo  n one count   p people are placed   c cancel the jump   a acknowledge   q q quit   ? this\n"
+    "+ - . tempo, tapped   n one count   p people are placed   c cancel the jump   up down standby   s solo   m mute\n"
+    "N note   a acknowledge   q q quit   ? this\n"
     "HOLD is no emergency stop: it changes lamps, and people have to see them. Somebody must watch the stage.\n";
 
 }  // namespace
@@ -44,9 +47,25 @@ void PromptDesk::look(const DeskView& view, RunDesk& /*desk*/) {
   show_state(view);
 }
 
+/// Arrow keys as one byte each; other sequences of a terminal are nobody's.
+std::string PromptDesk::without_arrows(const std::string& keys) {
+  std::string out;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i] != kEscape || i + 1 >= keys.size() || keys[i + 1] != '[') {
+      out += keys[i];
+      continue;
+    }
+    i += 2;
+    while (i < keys.size() && (keys[i] < '@' || keys[i] > '~')) ++i;  // ECMA-48, 5.4: parameters, then a final byte
+    if (i < keys.size() && keys[i] == 'A') out += kUp;
+    if (i < keys.size() && keys[i] == 'B') out += kDown;
+  }
+  return out;
+}
+
 void PromptDesk::read() {
   if (keys_) {
-    for (const char key : input_.take()) take_key(key);
+    for (const char key : without_arrows(input_.take())) take_key(key);
   } else {
     for (const std::string& line : input_.lines()) take_line(line);
   }
@@ -85,6 +104,18 @@ void PromptDesk::take_key(char key) {
       return change_tempo(kTempoStep_percent);
     case '-':
       return change_tempo(-kTempoStep_percent);
+    case 'N':
+      return ask("note ");
+    case '.':
+      return take_line("tap");
+    case 'm':
+      return seen_.muted.empty() ? ask("mute ") : take_line("unmute");
+    case 's':
+      return seen_.muted.empty() ? ask("solo ") : take_line("solo off");
+    case kUp:
+      return take_line("standby up");
+    case kDown:
+      return take_line("standby down");
     case 'n':
       return take_line("step");
     case 'p':

@@ -27,6 +27,7 @@ class PromptDesk final : public Surface {
   [[nodiscard]] bool listens() const override { return !input_.closed(); }
 
  private:
+  [[nodiscard]] static std::string without_arrows(const std::string& keys);
   void read();
   void take_line(const std::string& line);
   void take_key(char key);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 
@@ -154,6 +155,8 @@ DeskWishes RunDesk::look(const DeskView& view) {
   DeskView seen = view;
   for (const Facts& facts : facts_) facts(seen);
   against_ = seen.against;
+  limits_ = seen.limits;
+  cue_ = view.show.active >= 0 ? view.show.active : view.show.standby;
   tell_switched_off(view.show.inputs_off);
   for (Surface* surface : surfaces_) surface->look(seen, *this);
   wishes_.nobody = std::ranges::none_of(surfaces_, &Surface::listens);
@@ -172,6 +175,11 @@ void RunDesk::answered(const Answer& answer) {
   event.refused = refused(answer.outcome);
   if (names_bars(answer.outcome)) {
     for (std::size_t i = 0; i < against_.size(); ++i) event.text += (i == 0 ? ": " : ", ") + against_[i];
+  }
+  const bool known = limits_ != nullptr && cue_ >= 0 && static_cast<std::size_t>(cue_) < limits_->size();
+  if (known && answer.command.kind == Command::Kind::tempo && !event.refused) {
+    const controller::TempoLimit& most = (*limits_)[static_cast<std::size_t>(cue_)];
+    if (answer.command.percent > most.percent) event.text = fmt::format("at most {} %: {}", most.percent, most.because);
   }
   said_.erase(said);
   tell(std::move(event));

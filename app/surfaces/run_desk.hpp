@@ -47,6 +47,8 @@ class RunDesk {
   void bar(controller::Bars bars, bool there) { wishes_.bars = there ? wishes_.bars | bars : wishes_.bars & ~bars; }
   /// Show and plan have other contents: told to all surfaces.
   void plan_taken();
+  /// Who is not guided from now on, as `DeskWishes::muted`.
+  void mute(std::vector<bool> muted) { wishes_.muted = std::move(muted); }
   [[nodiscard]] std::string help() const;
   [[nodiscard]] const Orders& orders() const { return orders_; }
 
@@ -73,6 +75,8 @@ class RunDesk {
   std::vector<std::string> inputs_;  ///< names of speakers, by their numbers for the GO guard
   std::uint64_t off_ = 0;            ///< of them, those that are known to be switched off
   std::vector<std::string> against_;
+  const std::vector<controller::TempoLimit>* limits_ = nullptr;  ///< of the last view
+  int cue_ = -1;                                                 ///< that runs, or is standby
   std::uint32_t last_ = 0;
   DeskWishes wishes_;
   Instant now_{};

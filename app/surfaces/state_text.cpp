@@ -92,7 +92,8 @@ std::string StateText::what_happens(const ShowState& state) const {
   if (state.phase == Phase::finished) return "the show is over";
   const std::string next = state.standby < 0 ? "the end" : cue(state.standby);
   if (state.phase == Phase::stands) {
-    return state.active >= 0 ? fmt::format("HOLD in cue {}: GO goes on", cue(state.active)) : "GO for cue " + next;
+    if (state.active >= 0) return fmt::format("HOLD in cue {}: GO goes on", cue(state.active));
+    return "GO for cue " + next;
   }
   std::string text = "cue " + cue(state.active);
   if (state.phase == Phase::counts_in) return text + " goes " + in(state.goes_at);
@@ -116,20 +117,40 @@ std::string StateText::buses(const std::vector<BusView>& buses) const {
   return wrong.empty() ? fmt::format("all {} nodes right", nodes) : wrong;
 }
 
+/// What a HOLD would do now, while one is possible; what GO would, after it.
+std::string StateText::freeze(const DeskView& view) const {
+  const ShowState& state = view.show;
+  const FreezeView& freeze = view.freeze;
+  if (!freeze.known) return "";
+  const auto pairs = [](std::uint32_t count) {
+    return fmt::format("{} pair{} may touch", count, count == 1 ? "" : "s");
+  };
+  if (state.phase == Phase::stands && state.active >= 0 && freeze.resume_pairs > 0) {
+    return " | going on: " + pairs(freeze.resume_pairs) + " where people have walked on";
+  }
+  if (state.phase != Phase::runs) return "";
+  if (freeze.pairs == 0) return " | freeze safe";
+  if (freeze.none_from == kNever) return " | freeze: " + pairs(freeze.pairs) + "; HOLD at the end is better";
+  return fmt::format(" | freeze: {} until count {:.0f}; HOLD at the end is better", pairs(freeze.pairs),
+                     std::ceil(show_.tempo.count_at(freeze.none_from)));
+}
+
 std::string StateText::line(const DeskView& view) const {
   const ShowState& state = view.show;
   const double count = show_.tempo.count_at(state.position);
   std::string tempo = fmt::format("{} %", state.percent);
   if (state.percent == state.limit_percent) tempo += " (at most)";
+  if (!view.muted.empty()) tempo += ", not guided: " + view.muted;
   if (state.loops) {
     tempo +=
         fmt::format(", loop {:.4g}-{:.4g}", show_.tempo.count_at(state.loop.from), show_.tempo.count_at(state.loop.to));
   }
+  const std::string notes = view.standby_notes.empty() ? "" : " (" + view.standby_notes + ")";
   std::string against;
   for (const std::string& one : view.against) against += (against.empty() ? " | NO GO: " : ", ") + one;
-  return fmt::format("{} {} count {:.0f} | {} | {}{} | {}", section_at(state.position),
+  return fmt::format("{} {} count {:.0f} | {} | {}{}{} | {}", section_at(state.position),
                      show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, what_happens(state),
-                     against, buses(view.buses));
+                     notes + freeze(view), against, buses(view.buses));
 }
 
 std::string StateText::changes(const DeskView& view) {
@@ -142,6 +163,7 @@ std::string StateText::changes(const DeskView& view) {
   for (const ReadinessView::Stage& stage : view.readiness.stages) now += fmt::format(" {}", stage.state);
   now += view.readiness.armed ? " armed" : " refused";
   for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
+  now += fmt::format(" {} {}", view.freeze.known, view.muted);
   return now;
 }
 
@@ -173,30 +195,44 @@ std::string StateText::json(const DeskView& view) const {
       readiness["stages"].push_back({{"name", stage.name}, {"state", stage.state}, {"text", stage.text}});
     }
   }
+  Json freeze = nullptr;
+  if (view.freeze.known) {
+    const Instant none_from = view.freeze.none_from;
+    freeze = {{"pairs", view.freeze.pairs},
+              {"until_count", none_from == kNever ? Json(nullptr) : Json(show_.tempo.count_at(none_from))},
+              {"resume_pairs", view.freeze.resume_pairs}};
+  }
+  const int of_cue = state.active >= 0 ? state.active : state.standby;
+  const bool limited = view.limits != nullptr && of_cue >= 0 && static_cast<std::size_t>(of_cue) < view.limits->size();
   Json loop = nullptr;
   if (state.loops) loop = {{"from_s", to_seconds(state.loop.from)}, {"to_s", to_seconds(state.loop.to)}};
-  const Json document{{"phase", to_text(state.phase)},
-                      {"position_s", to_seconds(state.position)},
-                      {"rate", moves ? state.target.rate : 0.0},
-                      {"section", section_at(state.position)},
-                      {"measure", show_.tempo.measure_beat(std::floor(count))},
-                      {"count", count},
-                      {"cue", number(state.active)},
-                      {"standby", number(state.standby)},
-                      {"goes_in_s", left(state.goes_at)},
-                      {"ends_in_s", left(state.ends_at)},
-                      {"tempo_percent", state.percent},
-                      {"most_percent", state.limit_percent},
-                      {"holds_at_end", state.holds_at_end},
-                      {"loop", std::move(loop)},
-                      {"reset", std::move(reset)},
-                      {"switch", state.target.current},
-                      {"gates", std::move(gates)},
-                      {"against", view.against},
-                      {"readiness", std::move(readiness)},
-                      {"ready", view.roll_called},
-                      {"buses", std::move(buses)}};
-  return Json{{"state", document}}.dump();
+  const Json document{
+      {"phase", to_text(state.phase)},
+      {"position_s", to_seconds(state.position)},
+      {"rate", moves ? state.target.rate : 0.0},
+      {"section", section_at(state.position)},
+      {"measure", show_.tempo.measure_beat(std::floor(count))},
+      {"count", count},
+      {"cue", number(state.active)},
+      {"standby", number(state.standby)},
+      {"standby_notes", view.standby_notes},
+      {"goes_in_s", left(state.goes_at)},
+      {"ends_in_s", left(state.ends_at)},
+      {"tempo_percent", state.percent},
+      {"most_percent", state.limit_percent},
+      {"most_because", limited ? (*view.limits)[static_cast<std::size_t>(of_cue)].because : ""},
+      {"freeze", std::move(freeze)},
+      {"muted", view.muted},
+      {"holds_at_end", state.holds_at_end},
+      {"loop", std::move(loop)},
+      {"reset", std::move(reset)},
+      {"switch", view.schedule != nullptr ? view.schedule->plain(state.target.current) : state.target.current},
+      {"gates", std::move(gates)},
+      {"against", view.against},
+      {"readiness", std::move(readiness)},
+      {"ready", view.roll_called},
+      {"buses", std::move(buses)}};
+  return Json{{"state", document}}.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace footlight::app

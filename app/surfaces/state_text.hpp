@@ -32,6 +32,7 @@ class StateText {
   [[nodiscard]] std::string what_happens(const ShowState& state) const;
 
  private:
+  [[nodiscard]] std::string freeze(const DeskView& view) const;
   [[nodiscard]] std::string buses(const std::vector<BusView>& buses) const;
   [[nodiscard]] std::string_view section_at(Instant position) const;
   [[nodiscard]] std::string cue(int cue) const;

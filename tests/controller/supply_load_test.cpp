@@ -149,6 +149,19 @@ TEST_F(Supplies, AnOverloadedCueIsDimmedByOneFactorAndTheOthersAreNot) {
   EXPECT_EQ(look(1, 2), looks[1]) << "of none";
 }
 
+TEST_F(Supplies, ADimmedScheduleKeepsTheNumbersByWhichWaysBackAreLit) {
+  rig.supplies[1].limit_a = 0.17;
+  rig.supplies[1].overload = Supply::Overload::dim;
+  CueSchedule whole = schedule({2, 1, 2, 2});
+  whole.set_numbers({{1, 0}, {1, 2}});
+  const auto built = within_supplies(std::move(whole), rig, drivers, plays);
+  ASSERT_TRUE(built) << built.error().message;
+  EXPECT_EQ(built->numbers().pattern, (std::vector<std::uint8_t>{1, 0}));
+  ASSERT_EQ(built->numbers().of_entry, (std::vector<LookIndex>{1, 2}));
+  EXPECT_EQ(built->looks()[1], looks[1]);
+  EXPECT_EQ(built->looks()[2], looks[2]);
+}
+
 TEST_F(Supplies, DimmedLampsNeverGetDark) {
   rig.supplies[1].limit_a = 0.126;
   rig.supplies[1].overload = Supply::Overload::dim;

@@ -1,4 +1,5 @@
 """A rehearsal with the program: orders by lines and by the keys of a terminal, against `footlight sim`. Part of run.py."""
+import array
 import json
 import os
 import pty
@@ -8,6 +9,7 @@ import subprocess
 import termios
 import threading
 import time
+import wave
 
 from stage import wait_for
 
@@ -121,6 +123,62 @@ def make_cases(Stage, program):
                 time.sleep(0.3)
                 desk.say("go")
                 desk.until("the end of the loop", phase="stands", position_s=3.5)
+            desk.say("quit")
+            self.assertEqual(desk.process.wait(20), 0)
+
+        def test_notes_and_mutes_are_told_kept_through_a_kill_and_reported(self):
+            self.make_show()
+            self.serve()
+            desk = Desk(self, program(), "--count-in", "0")
+            desk.until("roll call", ready=True)
+            wait_for(lambda: desk.state["freeze"] is not None, "the freezes to be judged")
+            desk.say("solo left", "note left too slow", "note all smile", "mute nobody")
+            desk.until("the solo", muted="right")
+            quiet = lambda: {line["cell"] for line in self.changes() if (line["colour"], line["brightness"], line["effect"]) == ("#0000FF", 40, "steady")}
+            wait_for(lambda: len(quiet()) == 6, "the places of the six who are muted to be quiet")
+            wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in desk.state["buses"]), "all nodes right")
+            self.assertIn('mute: no group "nobody" (there are left, right; "no group")', desk.answers())
+            desk.process.kill()
+            desk.process.wait()
+            desk = Desk(self, program(), "--count-in", "0", "--rehearsal-report", self.path("report.html"))
+            desk.until("roll call", ready=True)
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            desk.say("note <i>ring</i> late", "notes", "quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assertEqual(report["unconfirmed"], 0)
+            self.assertEqual(desk.answers()[-1], "count 1, cue 1, left: too slow\ncount 1, cue 1, all: smile\ncount 3, cue 2, all: <i>ring</i> late")
+            folder = self.path("state", "footlight")
+            self.assertFalse(os.path.exists(os.path.join(folder, "rehearsal.jsonl")))
+            name, = [name for name in os.listdir(folder) if name.startswith("rehearsal-") and name.endswith(".json")]
+            with open(os.path.join(folder, name)) as f:
+                rehearsal = json.load(f)
+            self.assertEqual(rehearsal["programs"], 2)
+            self.assertEqual([(cue["cue"], cue["starts"], cue["ends"], len(cue["notes"])) for cue in rehearsal["cues"]], [("1", 1, 1, 2), ("2", 0, 0, 1), ("3", 0, 0, 0)])
+            self.assertEqual(rehearsal["refused"], 1)
+            with open(self.path("report.html")) as f:
+                self.assertIn("&lt;i&gt;ring&lt;/i&gt; late", f.read())
+
+        def test_the_count_in_is_heard_in_a_file_and_a_missing_device_costs_a_note(self):
+            self.make_show()
+            self.serve()
+            desk = Desk(self, program(), "--count-in", "4", "--sound", self.path("count.wav"), "--sound-language", "none")
+            desk.until("roll call", ready=True)
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            desk.say("quit")
+            self.assertEqual(desk.process.wait(20), 0)
+            with wave.open(self.path("count.wav")) as sound:
+                self.assertEqual((sound.getframerate(), sound.getnchannels(), sound.getsampwidth()), (48000, 1, 2))
+                samples = array.array("h", sound.readframes(sound.getnframes()))
+            loud = [i for i, sample in enumerate(samples) if abs(sample) > 3000]
+            clicks = [i for k, i in enumerate(loud) if k == 0 or i - loud[k - 1] > 4800]
+            self.assertEqual(len(clicks), 5, "four counts and the GO")
+            for one, next in zip(clicks, clicks[1:]):
+                self.assertAlmostEqual(next - one, 12000, delta=40, msg="240 counts a minute; accents are louder sooner")
+            desk = Desk(self, program(), "--count-in", "1", "--sound", "no-such-device")
+            desk.until("roll call", ready=True)
             desk.say("quit")
             self.assertEqual(desk.process.wait(20), 0)
 

@@ -49,6 +49,39 @@ TEST_F(StateTextTest, SaysWhatGoWillDo) {
   EXPECT_EQ(line(), "s1 2:2 count 6 | 118 % (at most) | HOLD in cue 1 cue 1: GO goes on | right 2/4 NOT RIGHT");
 }
 
+TEST_F(StateTextTest, SaysWhatAFreezeWouldDoNow) {
+  view_.show.active = 0;
+  view_.show.standby = 1;
+  view_.show.phase = Phase::runs;
+  view_.show.position = instant_at(2.6);
+  view_.show.ends_at = instant_at(101.4);
+  view_.freeze = {true, 3, instant_at(3.3), 2};
+  EXPECT_EQ(line(),
+            "s1 2:2 count 6 | 100 % | cue 1 cue 1 runs, GO for 2 cue 2 in 1.4 s | freeze: 3 pairs may touch until "
+            "count 8; HOLD at the end is better | all 10 nodes right");
+  const auto json = nlohmann::json::parse(StateText(small_.show, small_.plan, plays_).json(view_))["state"]["freeze"];
+  EXPECT_EQ(json, (nlohmann::json{{"pairs", 3}, {"until_count", 7.6}, {"resume_pairs", 2}}));
+  view_.freeze = {true, 0, instant_at(2.6), 0};
+  EXPECT_EQ(line(),
+            "s1 2:2 count 6 | 100 % | cue 1 cue 1 runs, GO for 2 cue 2 in 1.4 s | freeze safe | all 10 nodes right");
+  view_.show.phase = Phase::stands;
+  view_.freeze.resume_pairs = 1;
+  EXPECT_EQ(line(),
+            "s1 2:2 count 6 | 100 % | HOLD in cue 1 cue 1: GO goes on | going on: 1 pair may touch where people have "
+            "walked on | all 10 nodes right");
+}
+
+TEST_F(StateTextTest, SaysWhyTheTempoIsHeldBack) {
+  const std::vector<controller::TempoLimit> limits{
+      {200, ""}, {118, "performer 8 walks at 3.39 of 4 m/s at count 17"}, {200, ""}};
+  view_.limits = &limits;
+  view_.show.standby = 1;
+  view_.show.limit_percent = 118;
+  const auto json = nlohmann::json::parse(StateText(small_.show, small_.plan, plays_).json(view_))["state"];
+  EXPECT_EQ(json["most_percent"], 118);
+  EXPECT_EQ(json["most_because"], "performer 8 walks at 3.39 of 4 m/s at count 17");
+}
+
 TEST_F(StateTextTest, SaysWhatAResetMoveWaitsFor) {
   view_.show.reset = {ResetState::ready, 1, instant_at(4), instant_at(0)};
   view_.show.position = instant_at(4);
