@@ -15,6 +15,34 @@ namespace {
 /// "40 %", and "< 1 %" for what rounding would hide.
 std::string percent(double share) { return share > 0 && share < 0.01 ? "< 1 %" : fmt::format("{:.0f} %", 100 * share); }
 
+/// Those who go around others between two stops.
+void note_detours(const NoteTask& task, std::size_t k, Plan& plan) {
+  const Chain& chain = *task.chain;
+  const Grid& grid = task.show->stage.grid;
+  const Leg& leg = chain.legs[k];
+  std::size_t people = 0;
+  double walked_m = 0;
+  double straight_m = 0;
+  for (std::size_t n = 0; n < leg.vias.size();) {
+    const std::uint32_t person = leg.vias[n].person;
+    const CellIndex target = chain.stops[k + 1].cells[leg.target_of[person]];
+    CellIndex at = chain.stops[k].cells[person];
+    straight_m += distance(grid.centre(at), grid.centre(target));
+    for (; n < leg.vias.size() && leg.vias[n].person == person; ++n) {
+      walked_m += distance(grid.centre(at), grid.centre(leg.vias[n].cell));
+      at = leg.vias[n].cell;
+    }
+    walked_m += distance(grid.centre(at), grid.centre(target));
+    ++people;
+  }
+  plan.sections[chain.stops[k + 1].section.at()].notes.push_back(fmt::format(
+      "between count {:g} and count {:g} {} {} around others with {} mark{} of {} own on the way: {:.1f} m instead of "
+      "{:.1f} m",
+      task.show->tempo.count_at(chain.stops[k].depart), chain.stops[k + 1].count, people,
+      people == 1 ? "person goes" : "people go", leg.vias.size(), leg.vias.size() == 1 ? "" : "s",
+      people == 1 ? "her" : "their", walked_m, straight_m));
+}
+
 }  // namespace
 
 void note_what_gave_way(const NoteTask& task, Plan& plan) {
@@ -164,6 +192,9 @@ void note_marks_on_the_way(const NoteTask& task, Plan& plan) {
         show.tempo.count_at(chain.stops[one.first_stop].depart), goal.count, marks, marks == 1 ? "" : "s", one.walked_m,
         one.straight_m));
   }
+  for (std::size_t k = 0; k < chain.legs.size(); ++k) {
+    if (!chain.legs[k].vias.empty()) note_detours(task, k, plan);
+  }
 }
 
 std::vector<std::string> who_cannot_pass(const NoteTask& task) {
@@ -176,7 +207,7 @@ std::vector<std::string> who_cannot_pass(const NoteTask& task) {
     for (std::uint32_t p = 0; p < who.size(); ++p) who[(*task.slot)[one.leg][p]] = p;
     CannotPass fact{start.depart, chain.stops[one.leg + 1].section, one.given_s, one.needed_s, {}, {}};
     for (const auto& [a, b] : chain.legs[one.leg].conflicts) fact.pairs.emplace_back(who[a], who[b]);
-    fact.last = who[one.last];
+    if (one.last) fact.last = who[*one.last];
     texts.push_back(cannot_pass_text(show, fact));
   }
   return texts;

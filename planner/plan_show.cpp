@@ -146,10 +146,14 @@ class ShowPlanner {
     for (std::size_t k = 0; k < chain.legs.size(); ++k) {
       for (std::size_t p = 0; p < people; ++p) {
         const Chain::WalkTimes when = walking(chain, k, p);
-        const double walked_s = to_seconds(when.end - when.start);
-        const Grid& grid = show_.stage.grid;
-        const double walk_m = distance(grid.centre(cell_of(chain, k, p)), grid.centre(cell_of(chain, k + 1, p)));
-        fastest_mps[p] = std::max(fastest_mps[p], walk_m / walked_s);
+        Mark before{when.start, cell_of(chain, k, p)};
+        const auto walk_to = [&](const Mark& mark) {
+          const double walk_m = distance(show_.stage.grid.centre(before.cell), show_.stage.grid.centre(mark.cell));
+          if (walk_m > 0) fastest_mps[p] = std::max(fastest_mps[p], walk_m / to_seconds(mark.time - before.time));
+          before = mark;
+        };
+        for (const Mark& mark : chain.marks_on_the_way(k, slot_[k][p])) walk_to(mark);
+        walk_to({when.end, cell_of(chain, k + 1, p)});
       }
     }
     std::vector<std::size_t> track_of(people);
@@ -199,6 +203,9 @@ class ShowPlanner {
         const Instant depart = k < chain.legs.size() ? walking(chain, k, p).start : stop.depart;
         track.push_back({arrive, cell});
         if (depart > arrive) track.push_back({depart, cell});
+        if (k == chain.legs.size()) continue;
+        const std::vector<Mark> own = chain.marks_on_the_way(k, slot_[k][p]);
+        track.insert(track.end(), own.begin(), own.end());
       }
     }
   }

@@ -200,8 +200,8 @@ std::string cannot_pass_text(const Show& show, const CannotPass& fact) {
                            "other places for them, places that they may exchange, or a smaller clearance");
   }
   const double more = std::ceil((*fact.needed_s - fact.given_s) * show.tempo.bpm_at(last) / 60 - 1e-9);
-  text += fmt::format(": with marks on it it takes {:.1f} s of {:.1f} s, performer {} being the last", *fact.needed_s,
-                      fact.given_s, id(fact.last));
+  text += fmt::format(": with marks on it it takes {:.1f} s of {:.1f} s", *fact.needed_s, fact.given_s);
+  if (fact.last) text += fmt::format(", performer {} being the last", id(*fact.last));
   return section_message(show, fact.section, text,
                          fmt::format("start the section {:g} count{} later, or give them places that they may exchange",
                                      more, more == 1 ? "" : "s"));

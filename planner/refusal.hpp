@@ -23,7 +23,7 @@ struct CannotPass {
   double given_s = 0;
   std::optional<double> needed_s;                              ///< nothing: no way was found
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  ///< performers, who come too near on straight walks
-  std::uint32_t last = 0;                                      ///< performer who would arrive last
+  std::optional<std::uint32_t> last;                           ///< performer who would arrive last, where known
 };
 
 /// "file:line:col: error: sections[i]: performers 3 and 7 ... cannot pass each other ...": with the time that would do.

@@ -84,4 +84,20 @@ double least_squared_when_late_m2(const TimedWalk& a, const TimedWalk& b, double
   return least;
 }
 
+double least_squared_along_m2(std::span<const Knot> a, std::span<const Knot> b, double share) {
+  const auto piece = [](const Knot& from, const Knot& to) {
+    const Point velocity = 1 / (to.at - from.at) * (to.point - from.point);
+    return Piece{from.point - from.at * velocity, velocity, from.at, to.at};
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < a.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < b.size(); ++j) {
+      if (b[j + 1].at + share < a[i].at) continue;
+      if (b[j].at - share > a[i + 1].at) break;
+      least = std::min(least, least_of_pieces(piece(a[i], a[i + 1]), piece(b[j], b[j + 1]), share));
+    }
+  }
+  return least;
+}
+
 }  // namespace footlight::planner

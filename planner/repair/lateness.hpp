@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "planner/repair/closest_approach.hpp"
 
 namespace footlight::planner {
@@ -18,5 +20,15 @@ struct TimedWalk {
 /// 0 inside of it.
 /// @param share in [0, 1]; 0 is the closest approach of two who are punctual  @return m^2. O(1)
 [[nodiscard]] double least_squared_when_late_m2(const TimedWalk& a, const TimedWalk& b, double share);
+
+/// Where somebody is at a share of the time; straight and at constant speed to the next one.
+struct Knot {
+  double at = 0;
+  Point point;
+};
+
+/// The same for walks with marks on the way, or parts of such walks: only what lies between the first and the last knot
+/// is looked at. @param a, b ascending in time, at least two knots  @return infinity when they are never there together
+[[nodiscard]] double least_squared_along_m2(std::span<const Knot> a, std::span<const Knot> b, double share);
 
 }  // namespace footlight::planner

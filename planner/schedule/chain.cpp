@@ -258,7 +258,7 @@ class ChainBuilder {
   [[nodiscard]] std::vector<double> radius_toward(std::size_t k) const { return toward(k, casting_.radius_m); }
   [[nodiscard]] MendTask mending() const {
     return {&task_, [this](std::size_t k) { return kind_toward(k); },
-            [this](std::size_t k) { return radius_toward(k); }};
+            [this](std::size_t k) { return radius_toward(k); }, [this](Instant at) { return wait_s(at); }};
   }
   static std::vector<std::uint32_t> numbers(std::size_t size) {
     std::vector<std::uint32_t> out(size);
@@ -403,6 +403,18 @@ Chain::WalkTimes Chain::walk_times(std::size_t leg, std::uint32_t slot) const {
   const double whole_s = to_seconds(end - start);
   return {own.start > 0 ? start + seconds(own.start * whole_s) : start,
           own.end < 1 ? start + seconds(own.end * whole_s) : end};
+}
+
+std::vector<Mark> Chain::marks_on_the_way(std::size_t leg, std::uint32_t slot) const {
+  const std::vector<Leg::Via>& vias = legs[leg].vias;
+  const Instant start = stops[leg].depart;
+  const double whole_s = to_seconds(stops[leg + 1].arrive - start);
+  std::vector<Mark> marks;
+  auto via = std::lower_bound(vias.begin(), vias.end(), slot,
+                              [](const Leg::Via& one, std::uint32_t s) { return one.person < s; });
+  for (; via != vias.end() && via->person == slot; ++via)
+    marks.push_back({start + seconds(via->at * whole_s), via->cell});
+  return marks;
 }
 
 std::optional<Chain> walk_through(const ChainTask& task, const Progress& progress) {

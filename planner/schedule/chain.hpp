@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/plan.hpp"
 #include "planner/plan_section.hpp"
 #include "planner/schedule/cast_tracks.hpp"
 #include "planner/schedule/walks.hpp"
@@ -59,10 +60,10 @@ struct Chain {
   std::vector<Passed> passed;
   /// A change to an exact formation that could not be made.
   struct Unpassed {
-    std::size_t leg = 0;             ///< the first on the way there
-    double given_s = 0;              ///< the time there is
-    std::optional<double> needed_s;  ///< that would do; nothing when no way was found
-    std::uint32_t last = 0;          ///< who would arrive last: place in the leg's first stop
+    std::size_t leg = 0;                ///< the first on the way there
+    double given_s = 0;                 ///< the time there is
+    std::optional<double> needed_s;     ///< that would do; nothing when no way was found
+    std::optional<std::uint32_t> last;  ///< who would arrive last then, if that is known: place in the leg's first stop
   };
   std::vector<Unpassed> unpassed;
 
@@ -72,6 +73,8 @@ struct Chain {
     Instant end;
   };
   [[nodiscard]] WalkTimes walk_times(std::size_t leg, std::uint32_t slot) const;
+  /// Between the two, hers alone.
+  [[nodiscard]] std::vector<Mark> marks_on_the_way(std::size_t leg, std::uint32_t slot) const;
 };
 
 /// From formations to walks: ideal pairings of neighbours (parallel where nobody is bound), slots from each exact

@@ -2,8 +2,10 @@
 #include "planner/schedule/mend.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
+#include "planner/schedule/detours.hpp"
 #include "planner/schedule/passing.hpp"
 #include "planner/schedule/shift.hpp"
 
@@ -15,8 +17,10 @@ constexpr double kRounding_m = 1e-9;
 constexpr double kStepMargin = 1.001;
 /// Steps from cell to cell that are walked at once.
 constexpr std::size_t kStride = 4;
-/// More people are not looked for a way to pass each other.
+/// More people do not pass each other all at once; a few of them go around others all the same.
 constexpr std::size_t kMostPassing = 20'000;
+/// So many times the time that there is are tried to say which would do.
+constexpr std::array kLonger{1.25, 1.5, 2.0, 3.0, 5.0, 8.0};
 
 class Mender {
  public:
@@ -29,9 +33,8 @@ class Mender {
     for (std::size_t k = 1; k < chain_.stops.size();) {
       if (progress_.stopped()) return false;
       std::size_t end = k;
-      bool good = clear(chain_.legs[k - 1]);
-      while (!chain_.stops[end].station) good = clear(chain_.legs[end++]) && good;
-      if (good || !chain_.stops[end].exact || !replaced(end)) keep(k, end);
+      while (!chain_.stops[end].station) ++end;
+      if (!chain_.stops[end].exact || !replaced(k, end)) keep(k, end);
       k = end + 1;
     }
     chain_ = std::move(whole_);
@@ -40,6 +43,11 @@ class Mender {
 
  private:
   static bool clear(const Leg& leg) { return leg.walkable && leg.conflicts.empty(); }
+  /// Of the legs from stop k - 1 to stop `end`.
+  [[nodiscard]] bool clear(std::size_t k, std::size_t end) const {
+    return std::all_of(chain_.legs.begin() + std::ptrdiff_t(k) - 1, chain_.legs.begin() + std::ptrdiff_t(end),
+                       [](const Leg& leg) { return clear(leg); });
+  }
 
   void keep(std::size_t k, std::size_t end) {
     for (std::size_t j = k; j <= end; ++j) {
@@ -54,15 +62,68 @@ class Mender {
     whole_.longest_m.resize(stops - 1);
   }
 
-  /// Other stops and legs for those on the way to `end`.
-  bool replaced(std::size_t end) {
+  /// Other stops and legs for those on the way from stop k - 1 to `end`.
+  /// @return false when they stay, perhaps with marks of single people
+  bool replaced(std::size_t k, std::size_t end) {
+    const double lag_s = to_seconds(show_.stage.lag);
+    if (around(k, end, lag_s) || clear(k, end)) return false;
     const std::size_t before = whole_.stops.size();
     const std::vector<std::uint32_t> kind = task_.kind_toward(end);
     if (!ways_.open() && kind.empty()) {
       if (shift_to(chain_.stops[end])) return true;
       forget_after(before);
     }
-    return pass_to(end, kind);
+    const Stop& goal = chain_.stops[end];
+    const double total_s = to_seconds(goal.arrive - whole_.stops.back().depart);
+    const auto found = passing(end, kind, total_s);
+    const bool in_time = found && found->needed_s <= total_s;
+    if (!(in_time && (found->tolerates_lag || lag_s <= 0)) && lag_s > 0 && around(k, end, 0)) return false;
+    if (in_time) {
+      append_passing(*found, goal, whole_.stops.back(), total_s);
+    } else if (!progress_.stopped() && !too_far(goal, total_s)) {
+      whole_.unpassed.push_back(unpassed(k, end, found, total_s));
+    }
+    return in_time;
+  }
+
+  /// Where a stop's people come from.
+  [[nodiscard]] const Stop& before(std::size_t k, std::size_t stop) const {
+    return stop == k ? whole_.stops.back() : chain_.stops[stop - 1];
+  }
+
+  /// Sends those who conflict on the way from stop k - 1 to `end` around others.
+  /// @param lag_s how late people may be  @return false when that did not help everywhere; then nothing changes
+  bool around(std::size_t k, std::size_t end, double lag_s) {
+    std::vector<std::pair<std::size_t, Leg>> better;
+    for (std::size_t stop = k; stop <= end; ++stop) {
+      const Leg& leg = chain_.legs[stop - 1];
+      if (clear(leg) && (lag_s <= 0 || leg.late_conflicts.empty())) continue;
+      const Stop& from = before(k, stop);
+      const Stop& to = chain_.stops[stop];
+      auto found = detoured(leg, from.cells, to.cells, task_.radius_toward(stop),
+                            {chain_.longest_m[stop - 1], to_seconds(to.arrive - from.depart), lag_s, to.arrive});
+      if (!found) return false;
+      better.emplace_back(stop, std::move(*found));
+    }
+    for (auto& [stop, leg] : better) chain_.legs[stop - 1] = std::move(leg);
+    return true;
+  }
+
+  struct DetourLimits {
+    double longest_m = 0;
+    double time_s = 0;
+    double lag_s = 0;
+    Instant arrive;
+  };
+  [[nodiscard]] std::optional<Leg> detoured(const Leg& leg, const std::vector<CellIndex>& from,
+                                            const std::vector<CellIndex>& to, const std::vector<double>& radius_m,
+                                            const DetourLimits& limits) const {
+    if (!leg.walkable || limits.time_s <= 0) return std::nullopt;
+    DetourTask task{&ways_, from, to, task_.chain->clearance_m, limits.longest_m / limits.time_s, limits.time_s};
+    task.lag_s = limits.lag_s;
+    task.beat_s = task_.beat_s(limits.arrive);
+    task.radius_m = radius_m;
+    return detour(task, leg, progress_);
   }
 
   [[nodiscard]] double speed(const Stop& goal) const { return section_speed(show_, show_.sections[goal.section.at()]); }
@@ -129,36 +190,66 @@ class Mender {
     for (std::uint32_t& target : target_of) target = at_cell[cells[target].at()];
   }
 
-  /// The slots' own cells in the formation, numbered as before it.
-  bool pass_to(std::size_t end, const std::vector<std::uint32_t>& kind) {
-    const Stop& goal = chain_.stops[end];
-    const Stop start = whole_.stops.back();
-    const double total_s = to_seconds(goal.arrive - start.depart);
-    const Grid& grid = ways_.grid();
-    if (start.cells.size() > kMostPassing) return false;
-    for (std::size_t i = 0; i < start.cells.size(); ++i) {
-      if (distance(grid.centre(start.cells[i]), grid.centre(goal.own[i])) > speed(goal) * total_s) return false;
+  /// Somebody's own place is too far away to walk there at all.
+  [[nodiscard]] bool too_far(const Stop& goal, double total_s) const {
+    const std::vector<CellIndex>& from = whole_.stops.back().cells;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double walk_m = distance(ways_.grid().centre(from[i]), ways_.grid().centre(goal.own[i]));
+      if (walk_m > speed(goal) * total_s) return true;
     }
-    PassTask task{&ways_, start.cells, goal.own, kind};
+    return false;
+  }
+
+  /// To the slots' own cells in the formation, numbered as before it.
+  [[nodiscard]] std::optional<Passing> passing(std::size_t end, const std::vector<std::uint32_t>& kind,
+                                               double total_s) const {
+    const Stop& goal = chain_.stops[end];
+    const std::vector<CellIndex>& from = whole_.stops.back().cells;
+    if (from.size() > kMostPassing || too_far(goal, total_s)) return std::nullopt;
+    PassTask task{&ways_, from, goal.own, kind};
     task.clearance_m = task_.chain->clearance_m;
     task.speed_mps = speed(goal) / kStepMargin;
     task.time_s = total_s;
     task.lag_s = to_seconds(show_.stage.lag);
     const std::vector<double> radius_m = task_.radius_toward(end);
     task.radius_m = radius_m;
-    const auto found = pass(task, progress_);
-    if (!found || found->needed_s > total_s) {
-      whole_.unpassed.push_back({whole_.legs.size(), total_s, {}, 0});
-      if (found) whole_.unpassed.back().needed_s = found->needed_s;
-      if (found) whole_.unpassed.back().last = found->last;
-      return false;
+    return pass(task, progress_);
+  }
+
+  /// What could not be made, with a time that would do where one was found.
+  [[nodiscard]] Chain::Unpassed unpassed(std::size_t k, std::size_t end, const std::optional<Passing>& found,
+                                         double total_s) const {
+    Chain::Unpassed out{whole_.legs.size(), total_s, {}, {}};
+    if (found) {
+      out.needed_s = found->needed_s;
+      out.last = found->last;
+    } else if (k == end) {
+      for (const double times : kLonger) {
+        if (progress_.stopped() || !walked_in(end, times * total_s)) continue;
+        out.needed_s = times * total_s;
+        break;
+      }
     }
-    append_passing(*found, goal, start, total_s);
-    return true;
+    return out;
+  }
+
+  /// Whether people come to a formation in some other time, if need be around others.
+  [[nodiscard]] bool walked_in(std::size_t end, double time_s) const {
+    const Stop& goal = chain_.stops[end];
+    const std::vector<CellIndex>& from = whole_.stops.back().cells;
+    const std::vector<std::uint32_t> kind = task_.kind_toward(end);
+    const std::vector<double> radius_m = task_.radius_toward(end);
+    const double longest_m = std::max(0.0, speed(goal) * time_s - kRounding_m);
+    LegTask task{&ways_, from, goal.own, longest_m, task_.chain->clearance_m, kind};
+    task.stagger_share = task_.beat_s(goal.arrive) / time_s;
+    task.radius_m = radius_m;
+    task.stop = progress_.stop;
+    const Leg leg = settle(task);
+    return clear(leg) || detoured(leg, from, goal.own, radius_m, {longest_m, time_s, 0, goal.arrive});
   }
 
   /// Every step takes as long as every other where the limit allows it, else as its longest walk asks for.
-  void append_passing(const Passing& found, const Stop& goal, const Stop& start, double total_s) {
+  void append_passing(const Passing& found, const Stop& goal, Stop start, double total_s) {
     const std::size_t steps = found.longest_m.size();
     const double longest_m = *std::max_element(found.longest_m.begin(), found.longest_m.end());
     const bool even = longest_m * kStepMargin <= speed(goal) * total_s / static_cast<double>(steps);
@@ -200,8 +291,9 @@ class Mender {
 }  // namespace
 
 bool mend(const MendTask& task, Chain& chain, const Progress& progress) {
-  const bool clear = std::all_of(chain.legs.begin(), chain.legs.end(),
-                                 [](const Leg& leg) { return leg.walkable && leg.conflicts.empty(); });
+  const bool clear = std::all_of(chain.legs.begin(), chain.legs.end(), [](const Leg& leg) {
+    return leg.walkable && leg.conflicts.empty() && leg.late_conflicts.empty();
+  });
   return clear || Mender(task, chain, progress).run();
 }
 

@@ -46,6 +46,13 @@ struct Leg {
     double end = 1;
   };
   std::vector<Timing> timing;
+  /// A mark of one person's own between the two instants: she goes straight from mark to mark.
+  struct Via {
+    std::uint32_t person = 0;  ///< position in `from`
+    double at = 0;             ///< share of the time, within her timing
+    CellIndex cell;
+  };
+  std::vector<Via> vias;      ///< by person, then by time
   std::vector<CellIndex> to;  ///< the targets, where some have been moved; else empty
   bool walkable = true;       ///< every walk is short enough and clear of blocked cells
 };

@@ -115,6 +115,8 @@ class OneTransition {
         out.tracks[p].push_back({arrive, cell});
         const Instant depart = k < chain.legs.size() ? chain.walk_times(k, slot).start : stop.depart;
         if (depart > arrive) out.tracks[p].push_back({depart, cell});
+        if (k == chain.legs.size()) continue;
+        for (const Mark& mark : chain.marks_on_the_way(k, slot)) out.tracks[p].push_back(mark);
       }
     }
     return out;

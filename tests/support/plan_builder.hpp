@@ -24,13 +24,18 @@ namespace footlight::tests {
   return {instant_at(time_s), grid.index({column, row})};
 }
 
-/// `count` different cells.
-[[nodiscard]] inline std::vector<CellIndex> random_cells(const Grid& grid, std::size_t count, Rng& rng) {
-  std::vector<CellIndex> all;
-  for (int i = 0; i < grid.size(); ++i) all.push_back(CellIndex::of(i));
+/// `count` different cells of a list.
+[[nodiscard]] inline std::vector<CellIndex> random_cells(std::vector<CellIndex> all, std::size_t count, Rng& rng) {
   for (std::size_t i = 0; i < count; ++i) std::swap(all[i], all[i + rng.below(all.size() - i)]);
   all.resize(count);
   return all;
+}
+
+/// `count` different cells of a grid.
+[[nodiscard]] inline std::vector<CellIndex> random_cells(const Grid& grid, std::size_t count, Rng& rng) {
+  std::vector<CellIndex> all;
+  for (int i = 0; i < grid.size(); ++i) all.push_back(CellIndex::of(i));
+  return random_cells(std::move(all), count, rng);
 }
 
 /// Random walks between `marks` instants, shared or (when `own_times`) of everybody's own between the first and the

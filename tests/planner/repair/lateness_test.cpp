@@ -73,7 +73,23 @@ TEST(Lateness, IsTheLeastOfAllPairsOfClocksThatFitTheDelay) {
     // Between samples nobody walks more than a step of a diagonal of the floor, at five times the pace.
     RC_ASSERT(sampled <= least + 5 * 2 * 8.5 / kSteps);
     RC_ASSERT(std::abs(std::sqrt(least_squared_when_late_m2(b, a, share)) - least) < 1e-9);
+    const auto knots = [](const TimedWalk& one) {
+      std::vector<Knot> out;
+      if (one.start > 0) out.push_back({0, one.walk.from});
+      out.push_back({one.start, one.walk.from});
+      out.push_back({one.end, one.walk.to});
+      if (one.end < 1) out.push_back({1, one.walk.to});
+      return out;
+    };
+    RC_ASSERT(std::abs(std::sqrt(least_squared_along_m2(knots(a), knots(b), share)) - least) < 1e-9);
   }));
+}
+
+TEST(LeastSquaredAlong, PartsOfWalksThatAreNotThereTogetherNeverMeet) {
+  const std::vector<Knot> early{{0, {0, 0}}, {0.4, {4, 0}}};
+  const std::vector<Knot> late{{0.6, {4, 0}}, {1, {0, 0}}};
+  EXPECT_EQ(least_squared_along_m2(early, late, 0.1), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(least_squared_along_m2(early, late, 0.2), 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "tests/support/plan_builder.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -92,14 +93,7 @@ TEST(Tolerance, KeepsWhoAndWhereAndTheLimitsAndSaysTheTruthAboutWhatIsLeft) {
     Rng rng(*rc::gen::arbitrary<std::uint32_t>());
     Floor floor;
     const std::size_t people = 2 + rng.below(90);
-    const auto some = [&] {
-      std::vector<CellIndex> cells;
-      for (int i = 0; i < floor.grid.size(); ++i) cells.push_back(CellIndex::of(i));
-      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
-      cells.resize(people);
-      return cells;
-    };
-    floor.from = some();
+    floor.from = tests::random_cells(floor.grid, people, rng);
     floor.to = floor.from;
     // Everybody to a free cell nearby, where there is one.
     std::vector<char> taken(static_cast<std::size_t>(floor.grid.size()), 0);

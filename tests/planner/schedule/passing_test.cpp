@@ -12,6 +12,7 @@
 #include "core/rng.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/repair/lateness.hpp"
+#include "tests/planner/random_places.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -147,20 +148,9 @@ TEST_F(Pass, WhateverIsFoundIsClearAndKeepsTheKinds) {
     if (rng.below(3) == 0) stage.blocked = {CellIndex(31), CellIndex(32)};
     const Ways ways(stage, 0.25);
     const std::size_t people = 1 + rng.below(40);
-    const auto some = [&] {
-      std::vector<CellIndex> cells;
-      for (int i = 0; i < stage.grid.size(); ++i) {
-        if (ways.can_stand(CellIndex::of(i))) cells.push_back(CellIndex::of(i));
-      }
-      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
-      cells.resize(people);
-      return cells;
-    };
-    const auto from = some();
-    const auto to = some();
-    std::vector<std::uint32_t> kind(people);
-    const std::uint64_t kinds = 1 + rng.below(people);
-    for (std::uint32_t& one : kind) one = static_cast<std::uint32_t>(rng.below(kinds));
+    const auto from = random_places(ways, people, rng);
+    const auto to = random_places(ways, people, rng);
+    const auto kind = random_kinds(people, rng);
     const double clearances[] = {0.3, 0.5, 0.7, 0.9};
     const PassTask task{&ways, from, to, kind, clearances[rng.below(4)], 1.4, 30, rng.below(2) == 0 ? 0.0 : 0.2};
     const auto found = pass(task, {});

@@ -8,6 +8,7 @@
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "tests/support/plan_builder.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -52,14 +53,8 @@ TEST(Snap, EverybodyGetsACellOfTheirOwnWithinReach) {
       if (ways.can_stand(CellIndex::of(i))) free.push_back(CellIndex::of(i));
     }
     const std::size_t people = 1 + rng.below(free.size());
-    const auto some = [&] {
-      std::vector<CellIndex> cells = free;
-      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
-      cells.resize(people);
-      return cells;
-    };
-    const auto now = some();
-    const auto own = some();
+    const auto now = tests::random_cells(free, people, rng);
+    const auto own = tests::random_cells(free, people, rng);
     std::vector<Wanted> wanted;
     for (const CellIndex cell : own) wanted.push_back({stage.grid.centre(cell), rng.below(4) != 0});
     const double longest_m = 4 * rng.uniform();

@@ -10,6 +10,7 @@
 #include "core/rng.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/schedule/step.hpp"
+#include "tests/planner/random_places.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -128,20 +129,9 @@ TEST(Settle, NobodyEverTakesATargetOfAnotherKind) {
     if (rng.below(2) == 0) stage.blocked = {CellIndex(44)};
     const Ways ways(stage, 0.25);
     const std::size_t people = 1 + rng.below(60);
-    const auto some = [&] {
-      std::vector<CellIndex> cells;
-      for (int i = 0; i < stage.grid.size(); ++i) {
-        if (ways.can_stand(CellIndex::of(i))) cells.push_back(CellIndex::of(i));
-      }
-      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
-      cells.resize(people);
-      return cells;
-    };
-    const auto from = some();
-    const auto to = some();
-    std::vector<std::uint32_t> kind(people);
-    const std::uint64_t kinds = 1 + rng.below(people);
-    for (std::uint32_t& one : kind) one = static_cast<std::uint32_t>(rng.below(kinds));
+    const auto from = random_places(ways, people, rng);
+    const auto to = random_places(ways, people, rng);
+    const auto kind = random_kinds(people, rng);
     const Leg leg = settle({&ways, from, to, 2.0 + 8 * rng.uniform(), 0.5, kind});
     std::vector<std::uint32_t> order = leg.target_of;
     for (std::uint32_t i = 0; i < people; ++i) RC_ASSERT(kind[leg.target_of[i]] == kind[i]);
@@ -157,15 +147,8 @@ TEST(Settle, WithoutALimitNobodyEverComesNearerThanTheBound) {
     stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 10, 9, 1.0);
     const Ways ways(stage, 0.25);
     const std::size_t people = 1 + rng.below(80);
-    const auto some = [&] {
-      std::vector<CellIndex> cells;
-      for (int i = 0; i < stage.grid.size(); ++i) cells.push_back(CellIndex::of(i));
-      for (std::size_t i = 0; i < people; ++i) std::swap(cells[i], cells[i + rng.below(cells.size() - i)]);
-      cells.resize(people);
-      return cells;
-    };
-    const auto from = some();
-    const auto to = some();
+    const auto from = random_places(ways, people, rng);
+    const auto to = random_places(ways, people, rng);
     const Leg leg = settle({&ways, from, to, 1e9, 0.5});
     RC_ASSERT(leg.conflicts.empty());
     RC_ASSERT(near_pairs(walks_of(stage.grid, from, to, leg), stage.grid.clearance_bound_m() - 1e-9).empty());
