@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include <lo/lo.h>
 
@@ -14,6 +16,8 @@ constexpr std::size_t kMostValues = 16;
 constexpr int kDeepest = 4;
 constexpr std::string_view kBundle{"#bundle\0", 8};
 constexpr std::size_t kBundleHead = 16;  // and a time
+constexpr std::string_view kTypes = "ifdsSTF";
+constexpr const char* kWrongType = "arguments are numbers, strings, true and false";
 
 struct FreeMessage {
   void operator()(void* message) const { lo_message_free(message); }
@@ -28,6 +32,19 @@ std::uint32_t number_at(std::span<const std::byte> bytes) {
   std::uint32_t value = 0;
   for (const std::byte byte : bytes.first(4)) value = value << 8U | std::to_integer<std::uint32_t>(byte);
   return value;
+}
+
+/// The types that orders have, before the library sees the others: liblo 0.31 reads the length of a blob beyond the end
+/// of a message that has none.
+bool has_known_types(std::span<const std::byte> bytes) {
+  const auto address = std::ranges::find(bytes, std::byte{0});
+  const auto types = static_cast<std::size_t>(address - bytes.begin()) / 4 * 4 + 4;
+  if (types >= bytes.size() || bytes[types] != std::byte{','}) return true;  // refused by the library
+  for (const std::byte type : bytes.subspan(types + 1)) {
+    if (type == std::byte{0}) break;
+    if (kTypes.find(std::to_integer<char>(type)) == std::string_view::npos) return false;
+  }
+  return true;
 }
 
 /// @return false: of a type that no order has
@@ -58,6 +75,7 @@ bool take_value(char type, const lo_arg& argument, std::vector<OscValue>& values
 Status<> read_message(std::span<const std::byte> bytes, std::vector<OscMessage>& out) {
   if (bytes.size() % 4 != 0 || bytes.empty() || bytes[0] != std::byte{'/'}) return input_error("no OSC message");
   if (out.size() == kMostMessages) return input_error("more than 32 messages in one datagram");
+  if (!has_known_types(bytes)) return input_error(kWrongType);
   std::vector<std::byte> copy(bytes.begin(), bytes.end());  // the library turns numbers round in place
   int result = 0;
   const Message message(lo_message_deserialise(copy.data(), copy.size(), &result));
@@ -68,7 +86,7 @@ Status<> read_message(std::span<const std::byte> bytes, std::vector<OscMessage>&
   lo_arg** arguments = lo_message_get_argv(message.get());
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (!take_value(types[i], *arguments[i], read.values)) {
-      return input_error("arguments are numbers, strings, true and false");
+      return input_error(kWrongType);
     }
   }
   out.push_back(std::move(read));

@@ -41,6 +41,8 @@ TEST(OscPacket, WhatIsNoOscIsRefused) {
   EXPECT_EQ(read_osc(bytes_of("/a\0\0,s\0\0"sv)).error().message, "no OSC message") << "an argument is missing";
   EXPECT_EQ(read_osc(bytes_of("/a\0\0,b\0\0\0\0\0\4abcd"sv)).error().message,
             "arguments are numbers, strings, true and false");
+  EXPECT_EQ(read_osc(bytes_of("/a\0\0,b\0\0"sv)).error().message, "arguments are numbers, strings, true and false")
+      << "a blob without its length";
   EXPECT_EQ(read_osc(bytes_of("#bundle\0abc"sv)).error().message, "a bundle that is cut off");
   EXPECT_EQ(read_osc(bytes_of("#bundle\0\0\0\0\0\0\0\0\1\xff\xff\xff\xff/go\0,\0\0\0"sv)).error().message,
             "a bundle that is cut off");
