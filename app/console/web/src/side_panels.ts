@@ -135,6 +135,7 @@ export class SidePanels {
       const last = nodes.index[node] === kNothing ? "–" : nodes.index[node];
       lines.push(`${one.name} · ${show.buses[one.bus]?.name ?? "?"} ${one.address} · ${how} · ${last} · ${say("node_markers", { n: one.channels.filter((c) => c !== null).length })}`);
     });
+    show_if(by_id("wrong_title"), lines.length > 0);
     const list = by_id("wrong_nodes");
     const now = lines.join("\n");
     if (list.dataset.now === now) return;

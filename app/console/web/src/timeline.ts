@@ -56,15 +56,17 @@ export class Timeline {
     if (!show || !state) return;
     const shown_s = this.model_.shown_s(now_ms);
     if (scrub_s === undefined && Math.abs(Number(this.handle_.value) - shown_s) > kFollow_s) this.handle_.value = String(shown_s);
-    const count = scrub_s === undefined ? count_at(show.tempo, this.model_.clock.at(now_ms)) : count_at(show.tempo, scrub_s);
+    // What stands below is now, whatever is looked at.
+    const now_s = this.model_.clock.at(now_ms);
+    const count = count_at(show.tempo, shown_s);
     set_text(by_id("beat"), state.measure);
-    set_text(by_id("count"), count_text(Math.floor(count)));
+    set_text(by_id("count"), count_text(Math.floor(count_at(show.tempo, now_s) + 1e-6)));
     this.draw_time(now_ms);
     set_text(by_id("tempo"), `${state.tempo_percent} %`);
     set_text(by_id("most"), say("at_most", { most: state.most_percent }));
     set_flag(this.handle_, "aria-valuetext", `${clock_text(shown_s)}, ${say("count")} ${Math.floor(count)}`);
     show_if(by_id("scrubbed"), scrub_s !== undefined);
-    if (scrub_s !== undefined) set_text(by_id("scrubbed_at"), `${clock_text(scrub_s)} · ${say("count")} ${Math.floor(count)}`);
+    if (scrub_s !== undefined) set_text(by_id("scrubbed_at"), `${clock_text(scrub_s)}, ${say("count")} ${count_text(count)}.`);
     this.draw_line(shown_s);
   }
 
