@@ -137,7 +137,9 @@ void main() {
   if (state != 0u) {     // a cross over what it was last known to show; thicker for a silent one
     float width = (state & 1u) != 0u ? 0.24 : 0.13;
     float cross_m = min(abs(at.x - at.y), abs(at.x + at.y));
-    lamp = edge > 0.82 ? vec4(wrong, 1) : cross_m < width + 0.7 / px ? vec4(ink, 0.9) : vec4(light, 0.35);
+    // From far crosses would hide the people.
+    if (px < 5.0) lamp = vec4(wrong, 0.5);
+    else lamp = edge > 0.82 ? vec4(wrong, 1) : cross_m < width + 0.7 / px ? vec4(ink, 0.9) : vec4(light, 0.35);
   }
   colour = lamp;
 }`;
