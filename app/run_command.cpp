@@ -161,6 +161,8 @@ Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& opt
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
                         const std::optional<CutOff>& cut, Readiness& readiness) {
+  const auto journal = journal_in(state_folder(options.state));
+  const std::uint32_t epoch = cut && cut->epoch != 0 ? cut->epoch : next_epoch(journal);
   const Show& show = planned.loaded.show;
   RunDesk desk(show, planned.plan());
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
@@ -174,9 +176,14 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   LiveOptions live;
   NodeBoard board(rig.nodes.size());
   live.nodes = *console ? &(*console)->nodes() : &board;
-  Surviving surviving(journal_in(state_folder(options.state)), std::filesystem::absolute(options.choice.show).string(),
-                      config::digest_of(planned.plan()), rig, live.nodes);
+  Surviving surviving(journal, std::filesystem::absolute(options.choice.show).string(),
+                      config::digest_of(planned.plan()), rig, live.nodes, epoch);
+  if (auto opened = surviving.open_door(options.surviving, [&](const std::string& line) { session.note(line); });
+      !opened) {
+    return std::move(opened).error();
+  }
   surviving.join(desk);
+  live.epoch = epoch;
   ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go || cut);
   desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
@@ -192,7 +199,11 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   live.stop = session.stop();
   live.wire_log = wire_log;
   Rehearsing rehearsing(show, planned.plan(), desk, traces.folder(), options.rehearsing);
-  live.desk = [&](const DeskView& view) { return desk.look(view); };
+  live.desk = [&](const DeskView& view) {
+    DeskWishes wishes = desk.look(view);
+    wishes.ends = wishes.ends || surviving.handed_over();
+    return wishes;
+  };
   live.answered = [&](const Answer& answer) { desk.answered(answer); };
   live.wait = [&](Duration most) { desk.wait(most); };
   live.reset = [&](const std::string& line) {
@@ -221,7 +232,8 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
     desk.tell({RunEvent::Kind::moment, line});
   };
   auto report = live_run(show, planned.plan(), rig, ports, live);
-  surviving.journal().close(how_it_ended(report));
+  surviving.close(how_it_ended(report));
+  if (report && surviving.handed_over()) report = refusal("an understudy leads now: this run has stood back");
   session.clear_line();
   for (const std::string& trouble : rehearsing.finish(report ? &*report : nullptr)) session.note(trouble);
   return report;
@@ -234,13 +246,6 @@ Status<> keep(Session& session, WireRecorder& recorder, std::optional<GrowingFil
   }
   if (!recorder.whole()) session.note("the wire logs of the last ten minutes are not whole: the disk took no more");
   return file ? file->keep() : Status<>(Done{});
-}
-
-/// A show does not wait for pages of memory, where the machine lets it.
-void keep_in_memory(Session& session) {
-  if (const std::string why = lock_memory(); !why.empty()) {
-    session.note("the program's memory is not locked: " + why + " (LimitMEMLOCK=infinity in a unit, `ulimit -l`)");
-  }
 }
 
 int run(Session& session, const Options& options) {
@@ -258,6 +263,13 @@ int run(Session& session, const Options& options) {
     if (!found) return session.fail(found.error());
     cut = *found;
     if (!told.empty()) session.note(told);
+  }
+  if (!options.surviving.understudy.empty()) {
+    auto taken = follow_lead(
+        options.surviving, config::digest_of(planned->plan()), [&](const std::string& line) { session.note(line); },
+        session.stop());
+    if (!taken) return session.fail(taken.error());
+    cut = *taken;
   }
   Rig rig = planned->loaded.rig;
   if (auto found = find_buses(options, rig); !found) return session.fail(found.error());
@@ -281,7 +293,7 @@ int run(Session& session, const Options& options) {
     if (auto spared = spare_inputs(planned->loaded, options.wire_log); !spared) return session.fail(spared.error());
     if (auto opened = file.emplace("wire log", options.wire_log).open(); !opened) return session.fail(opened.error());
   }
-  keep_in_memory(session);
+  for (const std::string& line : prepare_for_real_time()) session.note(line);
   const SteadyClock clock;
   auto recorder = WireRecorder::open(rig, {traces.ring(), file ? &file->stream() : nullptr}, clock);
   if (!recorder) {

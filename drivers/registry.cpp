@@ -31,17 +31,25 @@ PortType& port_of_kind(PortReference port) {
   return **pointer;
 }
 
-DriverPointer make_serial(const Bus& /*bus*/, const Nodes& nodes, std::uint8_t plan_byte, PortReference port) {
-  return std::make_unique<SerialDriver>(port_of_kind<ByteStream>(port), nodes, plan_byte);
+/// What is asked of any driver.
+struct Asked {
+  std::uint8_t plan_byte = 0;
+  Leadership* leadership = nullptr;
+};
+
+ModbusProfile profile_of(const Bus& bus) { return bus.profile ? *bus.profile : footlight_marker_profile(); }
+
+DriverPointer make_serial(const Bus& /*bus*/, const Nodes& nodes, const Asked& asked, PortReference port) {
+  return std::make_unique<SerialDriver>(port_of_kind<ByteStream>(port), nodes, asked.plan_byte, asked.leadership);
 }
 
-DriverPointer make_canopen(const Bus& bus, const Nodes& nodes, std::uint8_t /*plan_byte*/, PortReference port) {
+DriverPointer make_canopen(const Bus& bus, const Nodes& nodes, const Asked& /*asked*/, PortReference port) {
   return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes, bus.outputs);
 }
 
-DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, std::uint8_t plan_byte, PortReference port) {
-  const ModbusProfile profile = bus.profile ? *bus.profile : footlight_marker_profile();
-  return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), profile, nodes, plan_byte);
+DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, const Asked& asked, PortReference port) {
+  return std::make_unique<ModbusDriver>(port_of_kind<ModbusPort>(port), profile_of(bus), nodes, asked.plan_byte,
+                                        asked.leadership);
 }
 
 /// Lamps of red, green and blue, where the rig names no fixture.
@@ -49,14 +57,14 @@ DmxFixture fixture_of(const Bus& bus) {
   return bus.fixture.value_or(DmxFixture{"dmx-rgb", {DmxSlot::red, DmxSlot::green, DmxSlot::blue}});
 }
 
-DriverPointer make_dmx(const Bus& bus, const Nodes& nodes, std::uint8_t /*plan_byte*/, PortReference port) {
+DriverPointer make_dmx(const Bus& bus, const Nodes& nodes, const Asked& /*asked*/, PortReference port) {
   return std::make_unique<DmxDriver>(port_of_kind<ByteStream>(port), fixture_of(bus), nodes);
 }
 
 struct Language {
   BusKind kind;
   int last_address;
-  DriverPointer (*make)(const Bus&, const Nodes&, std::uint8_t, PortReference);
+  DriverPointer (*make)(const Bus&, const Nodes&, const Asked&, PortReference);
 };
 
 // A new language is a line here, a folder in devices/ and its sources in CMakeLists.txt.
@@ -162,6 +170,19 @@ std::string example_for(BusKind kind) {
   return {};
 }
 
+Result<DriverPointer> make(const Bus& bus, const Nodes& nodes, const Asked& asked, PortReference port) {
+  for (const Language& language : kLanguages) {
+    if (language.kind != bus.kind) continue;
+    const auto checked = check_nodes(bus, nodes, language.last_address);
+    if (!checked) return checked.error();
+    if (bus.kind == BusKind::dmx) {
+      if (const auto slots = check_slots(bus, nodes); !slots) return slots.error();
+    }
+    return language.make(bus, nodes, asked, port);
+  }
+  return internal_error("bus \"" + bus.name + "\": no language for " + std::string(to_text(bus.kind)));
+}
+
 }  // namespace
 
 PortReference reference(const Port& port) {
@@ -194,16 +215,25 @@ LookIndex shown_for(const Bus& bus, LookIndex index, const Look& look) {
 
 Result<DriverPointer> make_driver(const Bus& bus, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
                                   PortReference port) {
-  for (const Language& language : kLanguages) {
-    if (language.kind != bus.kind) continue;
-    const auto checked = check_nodes(bus, nodes, language.last_address);
-    if (!checked) return checked.error();
-    if (bus.kind == BusKind::dmx) {
-      if (const auto slots = check_slots(bus, nodes); !slots) return slots.error();
-    }
-    return language.make(bus, nodes, plan_byte, port);
-  }
-  return internal_error("bus \"" + bus.name + "\": no language for " + std::string(to_text(bus.kind)));
+  return make(bus, nodes, {plan_byte, nullptr}, port);
+}
+
+Result<DriverPointer> make_leading_driver(const Bus& bus, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
+                                          PortReference port, Leadership& leadership) {
+  const bool leads = leadership.epoch != 0 && can_fence(bus);
+  return make(bus, nodes, {plan_byte, leads ? &leadership : nullptr}, port);
+}
+
+bool can_fence(const Bus& bus) {
+  if (bus.kind == BusKind::serial) return true;
+  if (bus.kind != BusKind::modbus_rtu && bus.kind != BusKind::modbus_tcp) return false;
+  // Our own registers have sequences and a lease; a device that knows no LEAD drops its broadcast without a word.
+  const ModbusProfile profile = profile_of(bus);
+  return profile.has_preload_sequence && profile.heartbeat_register && profile.has_broadcast;
+}
+
+std::uint8_t leading_byte(std::uint8_t plan_byte, std::uint32_t epoch) {
+  return static_cast<std::uint8_t>(1 + (plan_byte + epoch % 255) % 255);
 }
 
 Result<Port> open_port(const Bus& bus, const std::vector<NodeAddress>& nodes) {

@@ -25,6 +25,7 @@
 #include "controller/stands.hpp"
 #include "controller/tempo_limit.hpp"
 #include "core/clock.hpp"
+#include "drivers/leading.hpp"
 
 namespace footlight::app {
 namespace {
@@ -32,6 +33,7 @@ namespace {
 using controller::BusTarget;
 using controller::Lateness;
 
+constexpr Duration kDeadLead = milliseconds(4000);  // longer than any lease
 constexpr Duration kLookOn = milliseconds(20);
 constexpr Duration kPostRoll = milliseconds(2500);  // time for the last lamps to be right
 
@@ -45,12 +47,13 @@ LatenessReport report_of(const Lateness& lateness) {
 class LiveRun {
  public:
   LiveRun(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires,
-          const std::vector<drivers::Port>& ports, const LiveOptions& options)
+          const std::vector<drivers::Port>& ports, const LiveOptions& options, const drivers::Leadership& leadership)
       : show_(show),
         plan_(plan),
         rig_(rig),
         wires_(wires),
         options_(options),
+        leadership_(leadership),
         plans_(wires, show.tempo, controller::Stands(plan), options.rehearsal),
         cue_(plans_.rehearsal(), target_, clock_) {
     resets_.emplace(show, rig, *wires.schedule, options.plan_way);
@@ -84,6 +87,7 @@ class LiveRun {
   }
   void wait() const;
   void look_on();
+  void look_for_others();
   void listen_to_the_desk();
   void tell(const controller::Command& command);
   [[nodiscard]] bool over() const;
@@ -108,6 +112,7 @@ class LiveRun {
   ShowOnWires& wires_;
   std::vector<drivers::PortReference> ports_;
   const LiveOptions& options_;
+  const drivers::Leadership& leadership_;
   SteadyClock clock_;
   SharedTarget target_;
   PlaysInTurn plans_;
@@ -123,7 +128,9 @@ class LiveRun {
   ShowState state_;
   std::vector<BusView> buses_;
   std::shared_ptr<const Plan> way_;
-  bool ended_ = false;  ///< by the desk
+  bool ended_ = false;        ///< by the desk
+  bool stands_back_ = false;  ///< markers follow another controller
+  std::uint64_t fenced_before_ = 0;
   bool nobody_ = true;  ///< is left at the desk
 };
 
@@ -142,7 +149,7 @@ Result<LiveReport> LiveRun::play() {
   });
   for (const auto& bus : threads_) bus->start();
   Instant ends_at = kNever;
-  while (!stopped() && !ended_ && clock_.now() < ends_at) {
+  while (!stopped() && !ended_ && !stands_back_ && clock_.now() < ends_at) {
     wait();
     look_on();
     if (!over()) {
@@ -156,6 +163,10 @@ Result<LiveReport> LiveRun::play() {
   cue_.stop();
   for (const auto& bus : threads_) bus->stop();
   bare.stop();
+  if (stands_back_) {
+    return refusal(
+        "another controller leads these markers under a newer epoch: this one has stood back, and sends nothing more");
+  }
   if (stopped())
     return Error{ErrorKind::interrupted, "interrupted: the lamps keep what they show until their lease ends"};
   return report(bare, run);
@@ -172,7 +183,15 @@ bool LiveRun::over() const {
          state_.reset.state == controller::Rehearsal::ResetState::none;
 }
 
+/// In the beginning the fence may be that of a controller that has just died, and ends with its lease.
+void LiveRun::look_for_others() {
+  const std::uint64_t fenced = leadership_.refusals.load(std::memory_order_relaxed);
+  stands_back_ = fenced > fenced_before_ && clock_.now() > kStart + kDeadLead;
+  fenced_before_ = fenced;
+}
+
 void LiveRun::look_on() {
+  look_for_others();
   if (!roll_called_) call_the_roll();
   change_plan();
   const ShowState now = cue_.state();
@@ -376,14 +395,16 @@ void LiveRun::report_floor(LiveReport& report) const {
 
 Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, const std::vector<drivers::Port>& ports,
                             const LiveOptions& options) {
+  drivers::Leadership leadership;
+  leadership.epoch = options.epoch;
   std::vector<std::unique_ptr<drivers::Driver>> drivers;
   std::optional<LoggedPorts> logged;
   if (options.wire_log != nullptr) logged.emplace(*options.wire_log);
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     drivers::PortReference port = drivers::reference(ports[b]);
     if (logged) port = logged->before(b, rig.buses[b].kind, port);
-    auto driver = drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, BusIndex::of(b)),
-                                       controller::plan_byte_of(plan), port);
+    auto driver = drivers::make_leading_driver(rig.buses[b], drivers::node_addresses(rig, BusIndex::of(b)),
+                                               controller::plan_byte_of(plan), port, leadership);
     if (!driver) return std::move(driver).error();
     drivers.push_back(std::move(driver).value());
   }
@@ -392,7 +413,7 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
   const auto limits = limit_tempo(show, plan, rig, **wires, **wires);
   if (options.limits) options.limits(limits);
   if (options.changes != nullptr) options.changes->begin(**wires);
-  return LiveRun(show, plan, rig, **wires, ports, options).play();
+  return LiveRun(show, plan, rig, **wires, ports, options, leadership).play();
 }
 
 }  // namespace footlight::app

@@ -158,6 +158,9 @@ struct LiveOptions {
   /// Waits for the desk, at most so long; none: the calling thread sleeps.
   std::function<void(Duration)> wait;
   const std::atomic<bool>* stop = nullptr;
+  /// Under which the markers are led, told to those that can fence; 0: none. When one of them follows a newer epoch the
+  /// run ends at once.
+  std::uint32_t epoch = 0;
   /// Of show time, with the nodes that are not right now.
   std::function<void(double share, std::size_t unconfirmed)> progress;
   std::function<void(const std::string& line)> moment;  ///< a line for each cue and switch

@@ -18,7 +18,6 @@
 namespace footlight::app {
 namespace {
 
-constexpr int kPriority = 20;  // above what a desktop runs so, below the kernel's own threads
 constexpr Duration kLongestSleep = std::chrono::seconds(10);
 
 }  // namespace
@@ -49,7 +48,7 @@ Waiting::Why Waiting::until(Instant until, int file) const noexcept {
 bool ask_for_real_time() noexcept {
   (void)::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   sched_param parameter{};
-  parameter.sched_priority = kPriority;
+  parameter.sched_priority = kShowPriority;
   return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter) == 0;
 }
 

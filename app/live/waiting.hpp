@@ -29,6 +29,9 @@ class Waiting {
   FileDescriptor event_;
 };
 
+/// Of SCHED_FIFO: above what a desktop runs so, below the kernel's own threads.
+inline constexpr int kShowPriority = 20;
+
 /// Asks the kernel for what a thread of the show wants: short timers, and to run before others where that is allowed
 /// (SCHED_FIFO: the privilege CAP_SYS_NICE or a limit for rtprio). @return true when it was
 bool ask_for_real_time() noexcept;

@@ -14,6 +14,8 @@ namespace {
 constexpr std::uint8_t kIllegalFunction = 1;
 constexpr std::uint8_t kIllegalAddress = 2;
 constexpr std::uint8_t kIllegalValue = 3;
+constexpr std::uint8_t kFenced = 7;
+constexpr int kLeadAfterHeartbeat = 2;
 constexpr std::uint8_t kReadCoils = 0x01;
 constexpr std::uint8_t kWriteCoil = 0x05;
 constexpr std::uint8_t kWriteCoils = 0x0F;
@@ -252,6 +254,10 @@ std::uint8_t ModbusMarker::write(int first, const Words& values, Instant now) {
     model_.heartbeat(now);
     return 0;
   }
+  if (profile_.has_preload_sequence && profile_.heartbeat_register &&
+      *profile_.heartbeat_register + kLeadAfterHeartbeat == first) {
+    return write_lead(values, now);
+  }
   if (profile_.look_table_register == first) return write_look(values);
   if (profile_.identify_register == first) {
     if (values.size() != 1 || values[0] > 1) return kIllegalValue;
@@ -266,6 +272,13 @@ std::uint8_t ModbusMarker::write(int first, const Words& values, Instant now) {
   if (profile_.has_preload_sequence) return offset == 0 ? write_preload(values, now) : kIllegalAddress;
   if (offset < 0 || offset >= look_registers()) return kIllegalAddress;
   return write_bare_looks(offset, values, now);
+}
+
+std::uint8_t ModbusMarker::write_lead(const Words& values, Instant now) {
+  if (values.size() != 3 || values[2] > 0xFF) return kIllegalValue;
+  const std::uint32_t high = values[profile_.low_word_first ? 1 : 0];
+  const std::uint32_t low = values[profile_.low_word_first ? 0 : 1];
+  return model_.lead((high << 16U) | low, static_cast<std::uint8_t>(values[2]), now) ? std::uint8_t{0} : kFenced;
 }
 
 std::uint8_t ModbusMarker::write_address(std::uint16_t address) {
@@ -318,6 +331,7 @@ std::uint8_t ModbusMarker::write_preload(const Words& values, Instant now) {
   const auto sequence = static_cast<std::uint8_t>(values[0] & 0xFFU);
   const auto plan = static_cast<std::uint8_t>(values[0] >> 8U);
   if (count < 1 || count > look_registers() || !possible(sequence)) return kIllegalValue;
+  if (model_.fenced(plan, now)) return kFenced;
   model_.preload(sequence, plan, 0, looks_in(std::span(values).subspan(1), 0));
   if (!profile_.latch_register) model_.latch(sequence, plan, now);
   return 0;
@@ -353,6 +367,7 @@ std::uint8_t ModbusMarker::write_latch(const Words& values, Instant now) {
   if (values.size() != 3 || values[1] != (values[0] ^ 0x5A5A) || values[2] != (values[0] ^ 0xA5A5)) {
     return kIllegalValue;
   }
+  if (model_.fenced(plan, now)) return kFenced;
   model_.latch(sequence, plan, now);
   return 0;
 }

@@ -53,6 +53,7 @@ class ModbusMarker {
   std::uint8_t write_latch(const Words& values, Instant now);
   std::uint8_t write_look(const Words& values);
   std::optional<std::uint8_t> write_state(int first, const Words& values);
+  std::uint8_t write_lead(const Words& values, Instant now);
   std::uint8_t write_address(std::uint16_t address);
   std::uint8_t write_readdress(const Words& values);
   [[nodiscard]] std::vector<LookIndex> looks_in(std::span<const std::uint16_t> values, int first_channel) const;

@@ -30,6 +30,7 @@ void NodeModel::power_on(Instant now) {
   powered_on_at_ = now;
   renewed_ = now;
   identify_until_ = now;
+  epoch_ = 0;
   content_.fill({});
   pending_content_.fill({});
   times_set_ = 0;
@@ -116,6 +117,15 @@ std::optional<int> NodeModel::counts_left(int channel, Instant now) const {
   const auto left = static_cast<std::int32_t>(content.starts_ms - ms);  // modulo 2^32
   if (left <= 0) return 0;
   return (left + content.count_ms - 1) / content.count_ms;
+}
+
+bool NodeModel::lead(std::uint32_t epoch, std::uint8_t plan_byte, Instant now) {
+  settle(now);
+  if (epoch == 0 || (led(now) && epoch < epoch_)) return false;
+  epoch_ = epoch;
+  leader_ = plan_byte;
+  led_at_ = now;
+  return true;
 }
 
 void NodeModel::heartbeat(Instant now) {

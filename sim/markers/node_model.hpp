@@ -64,6 +64,13 @@ class NodeModel {
   bool take_staged(std::uint8_t sequence, Instant now);
 
   void heartbeat(Instant now);
+  /// The controller of this epoch leads, with frames of this plan byte. @return false, and
+  /// nothing happens, while one of a newer epoch does
+  bool lead(std::uint32_t epoch, std::uint8_t plan_byte, Instant now);
+  /// Whether frames of this plan byte are refused: another controller has led within the time of a lease.
+  [[nodiscard]] bool fenced(std::uint8_t plan_byte, Instant now) const { return led(now) && plan_byte != leader_; }
+  /// Of whoever leads; 0: nobody does.
+  [[nodiscard]] std::uint32_t epoch(Instant now) const { return led(now) ? epoch_ : 0; }
   /// Lets the lease run out if it is time. Called at lease_end() and before anything is asked of the node.
   void settle(Instant now);
   /// When `settle` will change the state next; kNever: not by itself.
@@ -105,6 +112,7 @@ class NodeModel {
 
  private:
   void take(std::uint8_t sequence, Instant now);
+  [[nodiscard]] bool led(Instant now) const { return epoch_ != 0 && now < led_at_ + kNoGuidanceAfter; }
 
   int channels_;
   bool has_lease_;
@@ -121,6 +129,9 @@ class NodeModel {
   Instant powered_on_at_ = kStart;
   Instant renewed_ = kStart;
   Instant identify_until_ = kStart;
+  std::uint32_t epoch_ = 0;
+  std::uint8_t leader_ = 0;  ///< its plan byte
+  Instant led_at_ = kStart;
   std::array<Look, 256> table_;
   struct PendingContent {
     std::uint8_t sequence = 0;

@@ -27,7 +27,8 @@ enum Command : std::uint8_t {
   kContent = 9,
   kWho = 10,
   kAddress = 11,
-  kHealth = 12
+  kHealth = 12,
+  kLead = 13
 };
 
 constexpr std::uint8_t kFirmware = 1;
@@ -113,6 +114,23 @@ std::vector<std::uint8_t> SerialMarker::end_of_frame(Instant now) {
   return obey(payload, now);
 }
 
+/// What a technician asks, by plan byte 0, is no show's.
+bool SerialMarker::is_fenced(std::span<const std::uint8_t> payload, Instant now) const {
+  switch (payload[1]) {
+    case kLead:
+    case kClock:
+    case kWho:
+    case kHealth:
+      return false;
+    case kStatus:
+    case kIdentify:
+    case kAddress:
+      return payload[3] != 0 && model_.fenced(payload[3], now);
+    default:
+      return model_.fenced(payload[3], now);
+  }
+}
+
 std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> payload, Instant now) {
   const bool to_all = payload[2] == 0;
   const std::uint8_t plan = payload[3];
@@ -120,6 +138,12 @@ std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> paylo
   const auto body = payload.subspan(kHeader);
   answer_slot_ = 0;
   std::vector<std::uint8_t> answer;
+  if (is_fenced(payload, now)) {
+    if (to_all || (payload[1] != kPreload && payload[1] != kStatus && payload[1] != kContent)) return {};
+    const std::uint32_t epoch = model_.epoch(now);
+    return frame_of({kFromNode, kLead, address_, plan, 0, byte_of(epoch, 0), byte_of(epoch, 1), byte_of(epoch, 2),
+                     byte_of(epoch, 3)});
+  }
   switch (payload[1]) {
     case kPreload:
       answer = preload(payload);
@@ -127,6 +151,10 @@ std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> paylo
     case kLatch:
       if (body.size() != 4) return drop();
       if (word_at(body) == (0x5A5A5A5AU ^ (sequence * 0x01010101U))) model_.latch(sequence, plan, now);
+      break;
+    case kLead:
+      if (body.size() != 4) return drop();
+      (void)model_.lead(word_at(body), plan, now);
       break;
     case kHeartbeat:
       if (body.size() != 4) return drop();

@@ -37,6 +37,7 @@ class SerialMarker {
   static constexpr std::size_t kLongestEncoded = 50;  ///< 9 bytes of header and check sum, 40 of body, 1 of COBS
 
   std::vector<std::uint8_t> end_of_frame(Instant now);
+  [[nodiscard]] bool is_fenced(std::span<const std::uint8_t> payload, Instant now) const;
   /// @param payload header and body without the check sum
   std::vector<std::uint8_t> obey(std::span<const std::uint8_t> payload, Instant now);
   std::vector<std::uint8_t> preload(std::span<const std::uint8_t> payload);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/driver.hpp"
+#include "drivers/leading.hpp"
 
 namespace footlight::drivers {
 namespace {
@@ -32,6 +33,16 @@ TEST(LooksCrc, TellsEverySingleChangedLook) {
 
 TEST(LooksCrc, TellsExchangedChannels) {
   EXPECT_NE(looks_crc(std::vector<LookIndex>{1, 2}), looks_crc(std::vector<LookIndex>{2, 1}));
+}
+
+TEST(LeadingByte, IsNeverZeroAndAnotherOneForTheNextEpoch) {
+  for (int plan = 0; plan < 256; ++plan) {
+    for (std::uint32_t epoch = 0; epoch < 600; ++epoch) {
+      const auto byte = leading_byte(static_cast<std::uint8_t>(plan), epoch);
+      ASSERT_NE(byte, 0);
+      ASSERT_NE(byte, leading_byte(static_cast<std::uint8_t>(plan), epoch + 1)) << plan << " " << epoch;
+    }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -44,6 +45,65 @@ def make_cases(Stage, footlight, program, full):
         def test_a_run_that_is_killed_again_and_again_leaves_no_marker_wrong(self):
             row, = self.soak("--kills", "200" if full else "5", "--seed", "3")
             self.assertEqual((row["wrong"], row["misplaced"]), (0, 0), row)
+
+        def test_an_understudy_takes_over_from_a_lead_that_is_killed(self):
+            row, = self.soak("--understudy", "--kills", "20" if full else "2", "--seed", "3")
+            self.assertEqual((row["wrong"], row["misplaced"]), (0, 0), row)
+
+        def understudy(self, make=True):
+            """(lead, understudy's process): the second follows the first."""
+            if make:
+                self.make_show()
+            self.serve()
+            with socket.socket() as one:
+                one.bind(("127.0.0.1", 0))
+                port = one.getsockname()[1]
+            lead = self.desk("--lead", str(port), "--lead-token", self.path("token"))
+            second = Desk(self, program(), "--count-in", "0", "--state", self.path("second"), "--understudy", f"127.0.0.1:{port}", "--lead-token", self.path("token"))
+            wait_for(lambda: "an understudy follows" in self.notes(lead), "the understudy", 60)
+            return lead, second, port
+
+        def test_an_understudy_leads_when_its_operator_says_so_and_the_first_stands_back(self):
+            lead, second, _ = self.understudy()
+            lead.say("go")
+            lead.until("the end of cue 1", phase="stands", standby="2")
+            time.sleep(0.3)
+            second.say("lead")
+            self.assertEqual(lead.process.wait(20), 3)
+            second.until("its first lamp", ready=True, phase="stands", standby="2")
+            second.say("go")
+            second.until("the end", phase="finished")
+            second.say("quit")
+            report = second.report()
+            self.assertEqual(second.process.wait(20), 0)
+            self.assert_floor(report)
+
+        def test_a_lead_that_comes_back_from_the_dead_is_fenced_and_stands_back(self):
+            self.make_show(("right",))
+            lead, second, _ = self.understudy(make=False)
+            lead.process.send_signal(signal.SIGSTOP)
+            second.until("it leads", ready=True)
+            lead.process.send_signal(signal.SIGCONT)
+            second.say("go")
+            second.until("the end of cue 1", phase="stands", standby="2")
+            time.sleep(0.3)
+            second.say("go")
+            lead.say("go")  # its operator does not know
+            second.until("the end", phase="finished")
+            self.assertEqual(lead.process.wait(30), 3)
+            second.say("quit")
+            report = second.report()
+            self.assertEqual(second.process.wait(20), 0)
+            self.assert_floor(report)
+
+        def test_another_token_is_refused_and_a_token_is_its_owners_alone(self):
+            lead, _, port = self.understudy()
+            self.assertEqual(os.stat(self.path("token")).st_mode & 0o777, 0o600)
+            _, said = footlight("run", self.show, "--transport-map", self.map, "--understudy", f"127.0.0.1:{port}", "--lead-token", self.path("other"), status=3)
+            self.assertIn("the lead refuses this understudy: another token is wanted", said)
+            wait_for(lambda: any("without the right token" in line.get("alarm", "") for line in lead.lines), "the alarm")
+            _, said = footlight("run", self.show, "--transport-map", self.map, "--lead", "0.0.0.0:0", status=2)
+            self.assertIn("--lead 0.0.0.0:0: an address that other machines reach needs --lead-token", said)
 
         def test_memory_and_handles_stay_flat(self):
             row, = self.soak("--hours", "0.2" if full else "0.015")

@@ -24,12 +24,22 @@ constexpr int kReadsPerStep = 64;               // a flood must not keep us from
 
 }  // namespace
 
-SerialDriver::SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte)
-    : port_(port), plan_byte_(plan_byte), margin_(kMargin) {
+SerialDriver::SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
+                           Leadership* leadership)
+    : port_(port),
+      leadership_(leadership),
+      plan_byte_(leadership == nullptr ? plan_byte : leading_byte(plan_byte, leadership->epoch)),
+      margin_(kMargin) {
   for (const NodeAddress& node : nodes) {
     FL_CHECK(node.address >= 1 && node.address <= 254);
     FL_CHECK(boots_.emplace(node.unit(), std::nullopt).second);
   }
+}
+
+void SerialDriver::take_plan(std::uint8_t plan_byte) {
+  const std::uint8_t byte = leadership_ == nullptr ? plan_byte : leading_byte(plan_byte, leadership_->epoch);
+  lead_due_ = lead_due_ || (leadership_ != nullptr && byte != plan_byte_);
+  plan_byte_.store(byte);
 }
 
 Duration SerialDriver::preload_time(int channels) const {
@@ -44,7 +54,10 @@ Duration SerialDriver::status_time() const {
 
 Duration SerialDriver::latch_time() const { return wire_time(footlight_serial::latch(plan_byte_, 1)); }
 
-Duration SerialDriver::heartbeat_time() const { return wire_time(footlight_serial::heartbeat(plan_byte_, 0)); }
+Duration SerialDriver::heartbeat_time() const {
+  const Duration lead = leadership_ == nullptr ? Duration{} : wire_time(footlight_serial::lead(plan_byte_, 0));
+  return lead + wire_time(footlight_serial::heartbeat(plan_byte_, 0));
+}
 
 Duration SerialDriver::upload_time() const { return wire_time(footlight_serial::look_entry(plan_byte_, 1, Look{})); }
 
@@ -67,7 +80,9 @@ SendStatus SerialDriver::latch(Sequence sequence, Instant now) {
 
 SendStatus SerialDriver::heartbeat(Duration show_time, Instant now) {
   const auto show_ms = static_cast<std::uint32_t>(show_time / milliseconds(1));
-  return send(footlight_serial::heartbeat(plan_byte_, show_ms), std::nullopt, 0, now);
+  const Frame beat = footlight_serial::heartbeat(plan_byte_, show_ms);
+  lead_due_ = lead_due_ || (leadership_ != nullptr && beats_since_lead_++ % kBeatsALead == 0);
+  return send(beat, std::nullopt, 0, now);
 }
 
 SendStatus SerialDriver::ask(const NodeAddress& node, Instant now) {
@@ -164,10 +179,16 @@ std::vector<HealthValue> SerialDriver::clock_values(const footlight_serial::Node
 SendStatus SerialDriver::send(const Frame& frame, std::optional<Awaited> awaited, std::size_t answer_bytes,
                               Instant now) {
   if (awaited_ || now < line_free_) return SendStatus::busy;
-  const std::vector<std::uint8_t> bytes = encode(frame);
+  std::vector<std::uint8_t> bytes = encode(frame);
+  if (lead_due_) {
+    // What nobody answers may be followed at once.
+    const std::vector<std::uint8_t> first = encode(footlight_serial::lead(plan_byte_, leadership_->epoch));
+    bytes.insert(bytes.begin(), first.begin(), first.end());
+  }
   const SendStatus status = port_.write(bytes);
   if (status != SendStatus::busy) down_ = status == SendStatus::down;
   if (status != SendStatus::accepted) return status;
+  lead_due_ = false;
   line_free_ = now + port_.wire_time(bytes.size());
   if (now - last_late_ >= kForgetLate) margin_ = kMargin;
   if (awaited) line_free_ += kTurnaround + port_.wire_time(frame_length(answer_bytes)) + margin_;
@@ -246,6 +267,14 @@ void SerialDriver::note_late(const Frame& frame, Instant now) {
 
 void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
   note_late(frame, now);
+  if (frame.command == Command::lead && awaited_ && !awaited_->task && frame.address == awaited_->node.address &&
+      frame.direction == footlight_serial::Direction::from_node) {
+    if (leadership_ != nullptr) leadership_->refusals.fetch_add(1, std::memory_order_relaxed);
+    events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
+    awaited_.reset();
+    line_free_ = Instant{};
+    return;
+  }
   // Who is asked to show itself answers by its status.
   const Command wanted = awaited_ && awaited_->command == Command::identify ? Command::status
                          : awaited_                                         ? awaited_->command

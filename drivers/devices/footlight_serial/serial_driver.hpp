@@ -9,6 +9,7 @@
 
 #include "drivers/devices/footlight_serial/serial_frame.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/leading.hpp"
 
 namespace footlight::drivers {
 
@@ -20,8 +21,9 @@ namespace footlight::drivers {
 /// request. Answers that do not fit what was asked are not ours and change nothing.
 class SerialDriver final : public Driver {
  public:
-  /// @param port borrowed for the life of the driver
-  SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte);
+  /// @param port borrowed for the life of the driver, as is the leadership; null: it leads without an epoch
+  SerialDriver(ByteStream& port, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
+               Leadership* leadership = nullptr);
 
   [[nodiscard]] std::string_view language() const override { return "footlight-serial"; }
   [[nodiscard]] Capabilities capabilities() const override {
@@ -37,7 +39,7 @@ class SerialDriver final : public Driver {
   [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override { return !line_taken_; }
 
-  void take_plan(std::uint8_t plan_byte) override { plan_byte_.store(plan_byte); }
+  void take_plan(std::uint8_t plan_byte) override;
   SendStatus start(Instant now) override;
   SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                      Instant now) override;
@@ -89,7 +91,10 @@ class SerialDriver final : public Driver {
                    EventSink& events);
 
   ByteStream& port_;
-  std::atomic<std::uint8_t> plan_byte_;                         ///< budgets are asked by other threads, too
+  Leadership* leadership_;  ///< null: it leads without an epoch
+  unsigned beats_since_lead_ = 0;
+  bool lead_due_ = false;                ///< before anything else: nodes do not know the plan byte yet
+  std::atomic<std::uint8_t> plan_byte_;  ///< budgets are asked by other threads, too
   std::map<std::uint8_t, std::optional<std::uint16_t>> boots_;  ///< last known, by address
   footlight_serial::FrameReceiver receiver_;
   std::optional<Awaited> awaited_;

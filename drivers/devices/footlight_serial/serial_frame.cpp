@@ -38,7 +38,7 @@ std::optional<Frame> parse(std::span<const std::uint8_t> payload) {
   if (check != crc_32(content)) return std::nullopt;
   const auto direction = static_cast<Direction>(content[0]);
   if (direction != Direction::from_controller && direction != Direction::from_node) return std::nullopt;
-  if (content[1] < 1 || content[1] > static_cast<std::uint8_t>(Command::health)) return std::nullopt;
+  if (content[1] < 1 || content[1] > static_cast<std::uint8_t>(Command::lead)) return std::nullopt;
   return Frame{direction,  static_cast<Command>(content[1]),          content[2], content[3],
                content[4], {content.begin() + kHeader, content.end()}};
 }
@@ -76,6 +76,12 @@ Frame latch(std::uint8_t plan_byte, Sequence sequence) {
 Frame heartbeat(std::uint8_t plan_byte, std::uint32_t show_time_ms) {
   Frame frame{Direction::from_controller, Command::heartbeat, 0, plan_byte, 0, {}};
   append_little_endian(frame.body, show_time_ms);
+  return frame;
+}
+
+Frame lead(std::uint8_t plan_byte, std::uint32_t epoch) {
+  Frame frame{Direction::from_controller, Command::lead, 0, plan_byte, 0, {}};
+  append_little_endian(frame.body, epoch);
   return frame;
 }
 

@@ -25,7 +25,8 @@ enum class Command : std::uint8_t {
   content = 9,
   who = 10,
   address = 11,
-  health = 12
+  health = 12,
+  lead = 13  ///< from a node: it is fenced
 };
 enum class Direction : std::uint8_t { from_controller = 0x01, from_node = 0x81 };
 
@@ -60,6 +61,7 @@ inline constexpr int kWhoSlots = 8;  ///< in which devices of one address answer
                             std::span<const LookIndex> looks);
 [[nodiscard]] Frame latch(std::uint8_t plan_byte, Sequence sequence);
 [[nodiscard]] Frame heartbeat(std::uint8_t plan_byte, std::uint32_t show_time_ms);
+[[nodiscard]] Frame lead(std::uint8_t plan_byte, std::uint32_t epoch);
 [[nodiscard]] Frame status_request(std::uint8_t address, std::uint8_t plan_byte);
 [[nodiscard]] Frame look_entry(std::uint8_t plan_byte, LookIndex index, const Look& look);
 [[nodiscard]] Frame identify(std::uint8_t address, std::uint8_t plan_byte, bool on);

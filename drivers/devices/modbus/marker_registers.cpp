@@ -139,6 +139,12 @@ Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_
   return write(profile, unit, profile.heartbeat_register.value(), {first, second});
 }
 
+Requests lead(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte, std::uint32_t epoch) {
+  FL_CHECK(profile.heartbeat_register.has_value());
+  const auto [first, second] = words_of(profile, epoch);
+  return write(profile, unit, profile.heartbeat_register.value() + kLeadAfterHeartbeat, {first, second, plan_byte});
+}
+
 ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit, std::uint16_t count) {
   FL_CHECK(profile.status_register.has_value());
   FL_CHECK(count >= 1 && count <= kStatusRegisters);

@@ -22,6 +22,7 @@ inline constexpr std::uint8_t kWriteCoil = 0x05;
 inline constexpr std::uint8_t kWriteRegister = 0x06;
 inline constexpr std::uint8_t kWriteCoils = 0x0F;
 inline constexpr std::uint8_t kWriteRegisters = 0x10;
+inline constexpr int kLeadAfterHeartbeat = 2;  ///< registers between the two blocks
 inline constexpr std::uint16_t kStatusRegisters = 6;
 inline constexpr std::uint16_t kNeededStatusRegisters = 4;  ///< the others are for people
 
@@ -45,6 +46,9 @@ using Requests = std::vector<ModbusRequest>;
                              Sequence sequence);
 /// @param profile with a heartbeat register
 [[nodiscard]] Requests heartbeat(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t show_time_ms);
+/// Epoch and plan byte of the controller, behind the heartbeat. @param profile with a heartbeat register
+[[nodiscard]] Requests lead(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
+                            std::uint32_t epoch);
 /// @param profile with a status register  @param count 1..6, the first registers of the block
 [[nodiscard]] ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit,
                                            std::uint16_t count = kStatusRegisters);

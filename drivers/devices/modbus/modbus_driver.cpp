@@ -22,6 +22,7 @@ enum Exception : std::uint8_t {
   kDeviceFailure = 4,  ///< the only one that is tried again at once
   kAcknowledge = 5,    ///< working on it
   kDeviceBusy = 6,
+  kFenced = 7,  ///< of our own marker: a controller of a newer epoch leads it
   kGatewayPath = 10,
   kGatewayTarget = 11,
 };
@@ -29,8 +30,12 @@ enum Exception : std::uint8_t {
 }  // namespace
 
 ModbusDriver::ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::vector<NodeAddress>& nodes,
-                           std::uint8_t plan_byte)
-    : port_(port), profile_(std::move(profile)), nodes_(nodes), plan_byte_(plan_byte) {
+                           std::uint8_t plan_byte, Leadership* leadership)
+    : port_(port),
+      profile_(std::move(profile)),
+      nodes_(nodes),
+      leadership_(leadership),
+      plan_byte_(leadership == nullptr ? plan_byte : leading_byte(plan_byte, leadership->epoch)) {
   FL_CHECK(profile_.looks_per_register == 1 || profile_.looks_per_register == 2);
   for (const NodeAddress& node : nodes_) FL_CHECK(node.address >= 1 && node.address <= 247);
   looks_.fill(Look{{255, 255, 255}, Effect::steady, 255});
@@ -98,6 +103,10 @@ Duration ModbusDriver::latch_time() const {
 
 Duration ModbusDriver::heartbeat_time() const {
   if (!profile_.heartbeat_register) return {};
+  if (leadership_ != nullptr) {
+    return time_of(modbus::heartbeat(profile_, kBroadcast, 0)) +
+           time_of(modbus::lead(profile_, kBroadcast, plan_byte_, 0));
+  }
   if (profile_.has_broadcast) return time_of(modbus::heartbeat(profile_, kBroadcast, 0));
   return static_cast<Duration::rep>(nodes_.size()) * time_of(modbus::heartbeat(profile_, kAnyUnit, 0));
 }
@@ -176,9 +185,10 @@ SendStatus ModbusDriver::latch(Sequence sequence, Instant now) {
 SendStatus ModbusDriver::heartbeat(Duration show_time, Instant now) {
   if (!profile_.heartbeat_register) return SendStatus::accepted;
   const auto show_ms = static_cast<std::uint32_t>(show_time / milliseconds(1));
-  return run(
-      to_all(Purpose::heartbeat, 0, [&](std::uint8_t unit) { return modbus::heartbeat(profile_, unit, show_ms); }),
-      now);
+  auto beats =
+      to_all(Purpose::heartbeat, 0, [&](std::uint8_t unit) { return modbus::heartbeat(profile_, unit, show_ms); });
+  lead_due_ = lead_due_ || (leadership_ != nullptr && beats_since_lead_++ % kBeatsALead == 0);
+  return run(std::move(beats), now);
 }
 
 SendStatus ModbusDriver::ask(const NodeAddress& node, Instant now) {
@@ -219,10 +229,22 @@ SendStatus ModbusDriver::run(std::vector<Job> jobs, Instant now) {
   const bool moment = jobs.front().request.unit == kBroadcast || purpose == Purpose::late_write ||
                       purpose == Purpose::latch || purpose == Purpose::heartbeat;
   if (quiet_ && !moment) return SendStatus::busy;
+  if (lead_due_) {
+    std::vector<Job> lead;
+    append(lead, Purpose::heartbeat, {}, 0, modbus::lead(profile_, kBroadcast, plan_byte_, leadership_->epoch));
+    jobs.insert(jobs.begin(), lead.begin(), lead.end());
+  }
   const SendStatus status = submit(jobs.front(), now);
   if (status != SendStatus::accepted) return status;
+  lead_due_ = false;
   jobs_.assign(jobs.begin() + 1, jobs.end());
   return status;
+}
+
+void ModbusDriver::take_plan(std::uint8_t plan_byte) {
+  const std::uint8_t byte = leadership_ == nullptr ? plan_byte : leading_byte(plan_byte, leadership_->epoch);
+  lead_due_ = lead_due_ || (leadership_ != nullptr && byte != plan_byte_);
+  plan_byte_.store(byte);
 }
 
 SendStatus ModbusDriver::submit(const Job& job, Instant now) {
@@ -320,6 +342,9 @@ void ModbusDriver::refuse(const Job& job, std::uint8_t code, EventSink& events) 
   event.detail = code;
   // A refusal by one who owes an answer may be of something else.
   if (code == kGatewayPath || code == kGatewayTarget || known_[job.node].owes) {
+    event.kind = DeviceEvent::Kind::missed;
+  } else if (code == kFenced && leadership_ != nullptr && job.purpose == Purpose::preload) {
+    leadership_->refusals.fetch_add(1, std::memory_order_relaxed);
     event.kind = DeviceEvent::Kind::missed;
   } else if (code == kDeviceFailure) {
     if (!job.retried) {

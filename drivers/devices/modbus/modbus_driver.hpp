@@ -13,6 +13,7 @@
 #include "core/rig.hpp"
 #include "drivers/devices/modbus/marker_registers.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/leading.hpp"
 
 namespace footlight::drivers {
 
@@ -45,7 +46,9 @@ namespace footlight::drivers {
 class ModbusDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver; it gives up on silent devices itself (Outcome::timeout)
-  ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte);
+  /// @param leadership borrowed; null: it leads without an epoch
+  ModbusDriver(ModbusPort& port, ModbusProfile profile, const std::vector<NodeAddress>& nodes, std::uint8_t plan_byte,
+               Leadership* leadership = nullptr);
 
   [[nodiscard]] std::string_view language() const override { return "modbus"; }
   [[nodiscard]] Capabilities capabilities() const override;
@@ -60,7 +63,7 @@ class ModbusDriver final : public Driver {
   [[nodiscard]] Duration upload_time() const override;
   [[nodiscard]] bool ready() const override;
 
-  void take_plan(std::uint8_t plan_byte) override { plan_byte_.store(plan_byte); }
+  void take_plan(std::uint8_t plan_byte) override;
   SendStatus start(Instant now) override;
   SendStatus preload(const NodeAddress& node, Sequence sequence, std::span<const LookIndex> looks,
                      Instant now) override;
@@ -134,6 +137,9 @@ class ModbusDriver final : public Driver {
   ModbusPort& port_;
   ModbusProfile profile_;
   std::vector<NodeAddress> nodes_;
+  Leadership* leadership_;  ///< null: it leads without an epoch
+  unsigned beats_since_lead_ = 0;
+  bool lead_due_ = false;                ///< before anything else: nodes do not know the plan byte yet
   std::atomic<std::uint8_t> plan_byte_;  ///< budgets are asked by other threads, too
   std::map<NodeIndex, Known> known_;
   std::map<NodeIndex, Kept> kept_;        ///< profiles without a latch

@@ -291,5 +291,17 @@ TEST_F(StateLampTest, ItsStatesAreFilledOnceAndThenSwitched) {
   EXPECT_EQ(ask({7, 6, 0, 11, 0, 3}), refusal(6, 3)) << "no such state";
 }
 
+TEST_F(ModbusMarkerTest, AFencedControllerIsRefusedByException7) {
+  ask({0, 0x10, 0, 0x32, 0, 3, 6, 0, 0, 0, 9, 0, 0x11});
+  EXPECT_EQ(hear(preload), refusal(0x10, 7));
+  EXPECT_EQ(ask({7, 0x10, 0, 0x32, 0, 3, 6, 0, 0, 0, 8, 0, 0xAB}), refusal(0x10, 7)) << "an older epoch";
+  EXPECT_EQ(model.pending_sequence(), 0);
+  ask({0, 0x10, 0, 0x32, 0, 3, 6, 0, 0, 0, 10, 0, 0xAB});
+  EXPECT_NE(hear(preload), refusal(0x10, 7));
+  hear(latch);
+  EXPECT_EQ(model.shown(0), 1);
+  EXPECT_EQ(ask({7, 0x10, 0, 0x32, 0, 2, 4, 0, 0, 0, 8}), refusal(0x10, 3)) << "half a LEAD";
+}
+
 }  // namespace
 }  // namespace footlight::sim

@@ -194,5 +194,21 @@ TEST_F(NodeModelTest, TheCheckSumCoversTheChannelsThatTheNodeHas) {
   EXPECT_EQ(node.crc(), 0x518C);  // of 07 08 09
 }
 
+TEST_F(NodeModelTest, WhoeverLeadsUnderTheNewestEpochFencesTheOthersAsLongAsALeaseRuns) {
+  EXPECT_FALSE(node.fenced(1, at_ms(0))) << "nobody leads";
+  EXPECT_TRUE(node.lead(7, 1, at_ms(0)));
+  EXPECT_FALSE(node.fenced(1, at_ms(100)));
+  EXPECT_TRUE(node.fenced(2, at_ms(100)));
+  EXPECT_TRUE(node.lead(8, 2, at_ms(200))) << "a newer epoch takes over";
+  EXPECT_TRUE(node.fenced(1, at_ms(300)));
+  EXPECT_FALSE(node.lead(7, 1, at_ms(300))) << "and the older one does not come back";
+  EXPECT_EQ(node.epoch(at_ms(2699)), 8U);
+  EXPECT_TRUE(node.fenced(1, at_ms(2699)));
+  EXPECT_FALSE(node.fenced(1, at_ms(2700))) << "but nobody has to know the epoch of a controller that has gone";
+  EXPECT_TRUE(node.lead(3, 3, at_ms(2700)));
+  node.power_on(at_ms(2800));
+  EXPECT_EQ(node.epoch(at_ms(2800)), 0U);
+}
+
 }  // namespace
 }  // namespace footlight::sim

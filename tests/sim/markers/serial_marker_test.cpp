@@ -231,5 +231,23 @@ TEST_F(SerialMarkerTest, TellsItsHealth) {
   EXPECT_EQ((*health)[9], 100);
 }
 
+TEST_F(SerialMarkerTest, AFencedControllerIsToldAndNothingElseHappens) {
+  ask({1, 13, 0, 0x11, 0, 9, 0, 0, 0});  // LEAD, epoch 9
+  const Octets fenced = serial_frame({0x81, 13, 7, 0xAB, 0, 9, 0, 0, 0});
+  EXPECT_EQ(hear(preload), fenced);
+  EXPECT_EQ(hear(ask_status), fenced);
+  EXPECT_EQ(model.pending_sequence(), 0);
+  ask({1, 13, 0, 0xAB, 0, 8, 0, 0, 0});  // an older epoch
+  EXPECT_EQ(hear(preload), fenced);
+  ask({1, 5, 0, 0xAB, 0, 3, 1, 2, 3, 4, 0});
+  EXPECT_EQ(model.look(3).colour, (Colour{255, 255, 255})) << "nor does it change a look";
+  EXPECT_FALSE(ask({1, 4, 7, 0, 0}).empty());
+  EXPECT_NE(ask({1, 4, 7, 0, 0}), serial_frame({0x81, 13, 7, 0, 0, 9, 0, 0, 0})) << "a technician may ask";
+  ask({1, 13, 0, 0xAB, 0, 10, 0, 0, 0});
+  EXPECT_EQ(hear(preload), receipt);
+  hear(latch);
+  EXPECT_EQ(model.shown(0), 1);
+}
+
 }  // namespace
 }  // namespace footlight::sim
