@@ -12,6 +12,7 @@
 #include "app/check_command.hpp"
 #include "app/command.hpp"
 #include "app/commission_command.hpp"
+#include "app/console_command.hpp"
 #include "app/dark_command.hpp"
 #include "app/devices_command.hpp"
 #include "app/diff_command.hpp"
@@ -36,10 +37,11 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,    add_check_command,  add_plan_command,       add_measure_command, add_why_command,
-    add_export_command, add_sheets_command, add_preview_command,    add_report_command,  add_diff_command,
-    add_dryrun_command, add_dark_command,   add_devices_command,    add_sim_command,     add_run_command,
-    add_bundle_command, add_import_command, add_commission_command, add_journal_command, add_freeze_command,
+    add_new_command,     add_check_command,  add_plan_command,       add_measure_command, add_why_command,
+    add_export_command,  add_sheets_command, add_preview_command,    add_report_command,  add_diff_command,
+    add_dryrun_command,  add_dark_command,   add_devices_command,    add_sim_command,     add_run_command,
+    add_bundle_command,  add_import_command, add_commission_command, add_journal_command, add_freeze_command,
+    add_console_command,
 };
 
 constexpr const char* kFooter =

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/live/waiting.hpp"
 #include "core/clock.hpp"
 
 namespace footlight::app {
@@ -74,6 +75,7 @@ std::uint64_t AuditLog::lost() const {
 }
 
 void AuditLog::run() {
+  yield_to_the_show();
   std::unique_lock lock(mutex_);
   while (true) {
     news_.wait(lock, [this] { return ends_ || !waiting_.empty(); });

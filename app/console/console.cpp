@@ -82,6 +82,7 @@ Result<std::unique_ptr<Console>> Console::open(const Place& place, const std::fi
   settings.about = {FOOTLIGHT_VERSION, random_hex(kRunBytes), plan.show_hash, console->epoch_};
   settings.nodes = &console->board_;
   for (const std::string& host : place.hosts) settings.rules.hosts.add(host);
+  settings.rules.most = place.most;
   if (loopback(place.address)) settings.rules.local_names = {"localhost"};
   settings.rules.needs_token = !loopback(place.address) || !place.hosts.empty();
   console->needs_token_ = settings.rules.needs_token;

@@ -19,6 +19,7 @@ class Console final : public Surface {
     std::string address = "127.0.0.1";  ///< numeric
     std::uint16_t port = 0;             ///< 0: any that is free
     std::vector<std::string> hosts{};   ///< names by which browsers may ask for it besides, with their port
+    Role most = Role::admin;            ///< that anybody may be
   };
   /// @param place "8440", "127.0.0.1:8440", "[::]:8440": an address and a port. Errors (ErrorKind::input)
   [[nodiscard]] static Result<Place> place_from(const std::string& place);

@@ -26,6 +26,7 @@ Result<std::unique_ptr<Console>> ConsoleOptions::open(Session& session, const st
   auto where = Console::place_from(place);
   if (!where) return std::move(where).error();
   where->hosts = hosts;
+  where->most = most;
   auto console = Console::open(*where, folder, show, plan, rig, desk, leads);
   if (!console) return console;
   desk.add(**console);

@@ -18,6 +18,7 @@ namespace footlight::app {
 struct ConsoleOptions {
   std::string place;  ///< empty: no console
   std::vector<std::string> hosts;
+  Role most = Role::admin;  ///< that anybody may be
 
   void add_options(CLI::App& command);
   /// Opens it, adds it to the desk and says where it is. @param folder for token and audit log  @return null when

@@ -113,9 +113,9 @@ std::optional<Verdict> wrong_method(const AskedFor& asked, Route route) {
 }  // namespace
 
 std::optional<Role> role_of(const ConsoleRules& rules, const Pairing& pairing, std::string_view token, bool stranger) {
-  if (!rules.token.empty() && same_secret(rules.token, token)) return Role::admin;
-  if (const auto role = pairing.role_of(token)) return role;
-  if (!rules.needs_token && !stranger && token.empty()) return Role::admin;
+  if (!rules.token.empty() && same_secret(rules.token, token)) return rules.most;
+  if (const auto role = pairing.role_of(token)) return std::min(*role, rules.most);
+  if (!rules.needs_token && !stranger && token.empty()) return rules.most;
   return std::nullopt;
 }
 

@@ -52,7 +52,8 @@ struct ConsoleRules {
   AllowedHosts hosts;
   std::vector<std::string> local_names{};  ///< that mean the address itself, with its port: "localhost"
   bool needs_token = false;
-  std::string token;  ///< the admin's
+  std::string token;        ///< the admin's
+  Role most = Role::admin;  ///< that anybody may be
 };
 
 /// The role of a token: the admin's own, or one that a code was good for; without a token the admin where none is

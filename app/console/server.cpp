@@ -5,14 +5,12 @@
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <pthread.h>
-#include <sched.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "app/console/http_connection.hpp"
 #include "app/console/server_works.hpp"
 #include "app/console/web_socket.hpp"
+#include "app/live/waiting.hpp"
 
 namespace footlight::app {
 namespace {
@@ -24,14 +22,6 @@ constexpr auto kTick = std::chrono::milliseconds(40);
 constexpr std::uint64_t kTicksOfRoom = 6;
 constexpr auto kPause = std::chrono::milliseconds(100);     // when the system has no more files to give
 constexpr auto kFarewell = std::chrono::milliseconds(300);  // for those who are connected when the run ends
-constexpr int kNice = 5;
-
-/// Whatever the program was started with: the show's threads go first.
-void yield_to_the_show() {
-  sched_param parameter{};
-  (void)::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &parameter);
-  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);  // of this thread alone, on Linux
-}
 
 }  // namespace
 

@@ -31,6 +31,7 @@ void WebSocket::accept(Request request) {
   timeout.keep_alive_pings = true;
   stream_.set_option(timeout);
   stream_.read_message_max(kLongestMessage);
+  stream_.auto_fragment(false);  // what is written is in memory as a whole
   stream_.async_accept(request_, [self = shared_from_this()](Error error) {
     if (error) return;
     self->request_ = {};

@@ -18,6 +18,7 @@
 namespace footlight::app {
 namespace {
 
+constexpr int kNice = 5;
 constexpr Duration kLongestSleep = std::chrono::seconds(10);
 
 }  // namespace
@@ -50,6 +51,12 @@ bool ask_for_real_time() noexcept {
   sched_param parameter{};
   parameter.sched_priority = kShowPriority;
   return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
+void yield_to_the_show() noexcept {
+  sched_param parameter{};
+  (void)::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &parameter);
+  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);  // of this thread alone, on Linux
 }
 
 Duration thread_cpu() noexcept {

@@ -35,6 +35,8 @@ inline constexpr int kShowPriority = 20;
 /// Asks the kernel for what a thread of the show wants: short timers, and to run before others where that is allowed
 /// (SCHED_FIFO: the privilege CAP_SYS_NICE or a limit for rtprio). @return true when it was
 bool ask_for_real_time() noexcept;
+/// What a thread asks for that must never stand in the way of the show's, whatever the program was started with.
+void yield_to_the_show() noexcept;
 
 /// Processor time that the calling thread has used.
 [[nodiscard]] Duration thread_cpu() noexcept;

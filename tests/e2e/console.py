@@ -2,6 +2,7 @@
 import base64
 import json
 import os
+import signal
 import socket
 import struct
 import subprocess
@@ -276,6 +277,25 @@ def make_cases(Stage, footlight, program):
             os.chmod(file, 0o644)
             _, said = footlight("run", self.show, "--transport-map", self.map, "--console", f"0.0.0.0:{self.port}", status=2)
             self.assertIn(f"console token {file}: others may read it (mode 644); chmod 600 it, or remove it for a new one", said)
+
+        def test_a_plan_is_looked_at_without_buses_and_nobody_gives_orders(self):
+            self.make_show()
+            process = self.start(program(), "console", self.show, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            address = process.stdout.readline().strip()
+            self.assertTrue(address.startswith("http://127.0.0.1:"), address)
+            self.port = int(address.rsplit(":", 1)[1])
+            page = Page(self.port, "Ana")
+            page.until("the state", phase="stands", standby="1")
+            self.assertEqual(page.heard("welcome")[0]["role"], "view")
+            page.say(order="go", id=1)
+            page.say(order="hold", id=2)
+            wait_for(lambda: len(page.heard("answer")) == 2, "the refusals")
+            self.assertEqual({answer["text"] for answer in page.heard("answer")}, {"who views gives no orders"})
+            show = json.loads(self.get("/api/show")[2])
+            self.assertEqual(self.get(f"/api/looks/{show['switches'] - 1}.bin")[0], 200)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(20), 0)
+            process.stdout.close()
 
         def test_a_place_that_is_none_is_refused(self):
             self.make_show()

@@ -194,6 +194,11 @@ TEST_F(RequestRules, RolesComeFromTokens) {
   EXPECT_EQ(role_of(rules_, pairing_, "", false), std::nullopt);
   EXPECT_EQ(role_of(rules_, pairing_, rules_.token, false), Role::admin);
   EXPECT_EQ(role_of(rules_, pairing_, rules_.token, true), Role::admin);
+  rules_.most = Role::view;
+  EXPECT_EQ(role_of(rules_, pairing_, rules_.token, false), Role::view);
+  const auto paired = pairing_.redeem(pairing_.make(Role::operate, kStart), kStart);
+  ASSERT_TRUE(paired);
+  EXPECT_EQ(role_of(rules_, pairing_, paired->token, false), Role::view);
 }
 
 TEST_F(RequestRules, AddressesThatAreNotPlainLeadNowhere) {
