@@ -40,8 +40,8 @@ Status<> serve(Session& session, const Options& options, const PlannedShow& plan
                const controller::CueSchedule& schedule) {
   const Show& show = planned.loaded.show;
   RunDesk desk(show, planned.plan());
-  auto console = options.console.open(session, state_folder(options.state), show, planned.plan(), planned.loaded.rig,
-                                      desk, false);
+  auto console =
+      options.console.open(session, state_folder(options.state), show, planned.plan(), planned.loaded.rig, desk, false);
   if (!console) return std::move(console).error();
   session.print_now((*console)->address());
   const SteadyClock clock;

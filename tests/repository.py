@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """House rules that a compiler does not see: the dependency rule between folders, sources that no target builds, files without a licence
-line, clocks read outside of core/clock.cpp, libraries used outside of their one place, tests that docs/faults.md names and that are not there. One line for each finding; exit status 1 if any."""
+line, clocks read outside of core/clock.cpp, libraries used outside of their one place, tests that docs/faults.md and docs/console.md name and that are not there. One line for each finding; exit status 1 if any."""
 import os
 import re
 import subprocess
@@ -34,6 +34,7 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"RtMidi\.h": r"^app/midi/",
     r"lo/": r"^app/remote/|^app/time/",
     r"CLI/": r"^app/",
+    r"boost/(asio|beast)": r"^app/console/",
 }
 
 
@@ -43,17 +44,19 @@ def tracked(*patterns):
 
 
 def faults_without_test():
-    """docs/faults.md promises with the names of tests: each of them is there."""
+    """docs/faults.md and docs/console.md promise with the names of tests: each of them is there."""
     tests = ""
     for path in tracked("tests/*.cpp", "tests/e2e/*.py"):
         with open(os.path.join(ROOT, path)) as f:
             tests += f.read()
     names = {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", tests, re.M)}
-    names |= {f"{suite}.{name}" for suite in ("Devices", "Live") for name in re.findall(r"def (test_\w+)", tests)}
-    with open(os.path.join(ROOT, "docs", "faults.md")) as f:
-        named = re.findall(r"`(\w+\.\w+\*?|\w+\.\*)`", f.read())
+    names |= {f"{suite}.{name}" for suite in ("Console", "Devices", "Live") for name in re.findall(r"def (test_\w+)", tests)}
+    named = []
+    for page in ("faults.md", "console.md"):
+        with open(os.path.join(ROOT, "docs", page)) as f:
+            named += re.findall(r"`([A-Z]\w+\.\w+\*?|[A-Z]\w+\.\*)`", f.read())
     suites = {name.split(".")[0] for name in names}
-    return [f"docs/faults.md: there is no test {name}" for name in sorted(set(named))
+    return [f"docs/faults.md, docs/console.md: there is no test {name}" for name in sorted(set(named))
             if name not in names and not (name.endswith("*") and (any(n.startswith(name[:-1]) for n in names) or name[:-2] in suites))]
 
 

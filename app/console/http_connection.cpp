@@ -113,7 +113,7 @@ void HttpConnection::answer(const Verdict& verdict) {
     case Route::plan:
       return answer_document(works_.documents.plan, kBytes);
     case Route::way:
-      return answer_document(works_.documents.way, kBytes);
+      return answer_document(works_.documents.way, kBytes, 404);
     case Route::looks:
       stream_.expires_never();
       return works_.want_looks(verdict.number, shared_from_this());
@@ -144,8 +144,8 @@ void HttpConnection::answer_page() {
   respond(known ? 304 : 200, content_type_of(file->path), known ? std::string_view() : file->bytes, nullptr, etag);
 }
 
-void HttpConnection::answer_document(const Letter& document, std::string_view type) {
-  if (!document) return refuse(404, "there is none now");
+void HttpConnection::answer_document(const Letter& document, std::string_view type, int missing) {
+  if (!document) return refuse(missing, missing == 404 ? "there is none now" : "the run has only begun: ask again");
   respond(200, type, *document, document);
 }
 
@@ -160,7 +160,8 @@ void HttpConnection::refuse(int status, const std::string& why) {
     const auto target = view(parser_->get().target());
     what = fmt::format("{} {}", view(parser_->get().method_string()), target.substr(0, 200));
   }
-  if (status != 404) works_.refused(admission_->caller().from, what, fmt::format("{} {}", status, why));
+  if (status != 404 && status != 503)
+    works_.refused(admission_->caller().from, what, fmt::format("{} {}", status, why));
   last_ = true;
   const nlohmann::ordered_json json{{"error", why}};
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;

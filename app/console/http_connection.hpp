@@ -37,7 +37,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   [[nodiscard]] AskedFor asked() const;
   void answer(const Verdict& verdict);
   void answer_page();
-  void answer_document(const Letter& document, std::string_view type);
+  /// @param missing what to say where there is none
+  void answer_document(const Letter& document, std::string_view type, int missing = 503);
   void refuse(int status, const std::string& why);
   void respond(int status, std::string_view type, std::string_view body, Letter owner, std::string_view etag = {});
   void on_written(Error error);

@@ -22,6 +22,7 @@
 namespace footlight::app {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -93,6 +94,14 @@ TEST_F(ServerTest, ThePageAndTheDocumentsAreServedWithEveryHeaderThatGuardsThem)
   one.send(one.get("/api/plan.bin"));
   EXPECT_THAT(one.response(), HasSubstr("Cache-Control: no-store"));
   EXPECT_THAT(answer(client().get("/api/way.bin")), StartsWith("HTTP/1.1 404 "));
+}
+
+TEST_F(ServerTest, ARunThatHasOnlyBegunSaysSo) {
+  auto server = ConsoleServer::open({}, orders_, nullptr, clock_);
+  ASSERT_TRUE(server);
+  RawClient one(server.value()->port());
+  one.send(one.get("/api/show"));
+  EXPECT_THAT(one.response(), AllOf(StartsWith("HTTP/1.1 503 "), HasSubstr("the run has only begun: ask again")));
 }
 
 TEST_F(ServerTest, ThePageIsNotSentAgainToWhoHasIt) {
