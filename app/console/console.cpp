@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <system_error>
 #include <utility>
 
 #include <arpa/inet.h>
@@ -86,6 +87,8 @@ Result<std::unique_ptr<Console>> Console::open(const Place& place, const std::fi
   if (loopback(place.address)) settings.rules.local_names = {"localhost"};
   settings.rules.needs_token = !loopback(place.address) || !place.hosts.empty();
   console->needs_token_ = settings.rules.needs_token;
+  std::error_code ignored;  // whoever writes there next says what is wrong
+  std::filesystem::create_directories(folder, ignored);
   auto token = token_in(folder / "console.token");
   if (!token) return std::move(token).error();
   settings.rules.token = std::move(token).value();

@@ -267,11 +267,11 @@ def make_cases(Stage, footlight, program):
             with open(file) as f:
                 token = f.read().strip()
             self.assertEqual(len(token), 64)
+            page = Page(self.port, "Ana", token)
+            page.until("roll call", ready=True)
             self.assertEqual(self.get("/api/show", Authorization=f"Bearer {token}")[0], 200)
             self.assertEqual(self.get(f"/api/show?token={token}")[0], 404)
             self.assertEqual(self.get("/api/show", Authorization=f"Bearer {token}", Host="evil.example")[0], 421)
-            page = Page(self.port, "Ana", token)
-            page.until("roll call", ready=True)
             self.process.kill()
             self.process.wait()
             os.chmod(file, 0o644)
