@@ -31,6 +31,7 @@
 #include "app/surfaces/prompt_desk.hpp"
 #include "app/surviving/supervisor.hpp"
 #include "app/surviving/surviving.hpp"
+#include "app/time/time_options.hpp"
 #include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
 #include "config/output_file.hpp"
@@ -58,6 +59,7 @@ struct Options {
   ReadyOptions ready;
   RehearsingOptions rehearsing;
   SoundOptions sound;
+  TimeOptions time;
 
   /// Nobody has to be counted in where GO presses itself.
   [[nodiscard]] double count_in() const { return count_in_counts.value_or(go ? 0 : 4); }
@@ -160,11 +162,12 @@ Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& opt
 
 Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
-                        const std::optional<CutOff>& cut, Readiness& readiness) {
+                        const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time) {
   const auto journal = journal_in(state_folder(options.state));
   const std::uint32_t epoch = cut && cut->epoch != 0 ? cut->epoch : next_epoch(journal);
   const Show& show = planned.loaded.show;
   RunDesk desk(show, planned.plan());
+  time.add_to(desk);
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
   desk.add(prompt);
   auto console =
@@ -205,6 +208,7 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
     return wishes;
   };
   live.answered = [&](const Answer& answer) { desk.answered(answer); };
+  live.clock = [&](const Clock& run) { time.use(run); };
   live.wait = [&](Duration most) { desk.wait(most); };
   live.reset = [&](const std::string& line) {
     traces.moment(line);
@@ -283,6 +287,9 @@ int run(Session& session, const Options& options) {
     session.print(session.json ? stages_json(readiness) : stages_text(readiness));
     return 0;
   }
+  const SteadyClock clock;
+  const auto time = options.time.open(planned->loaded.show, options.go, clock);
+  if (!time) return session.fail(time.error());
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
   readiness.tell(Readiness::Stage::buses, Readiness::State::success, fmt::format("{} open", rig.buses.size()));
@@ -294,14 +301,13 @@ int run(Session& session, const Options& options) {
     if (auto opened = file.emplace("wire log", options.wire_log).open(); !opened) return session.fail(opened.error());
   }
   for (const std::string& line : prepare_for_real_time()) session.note(line);
-  const SteadyClock clock;
   auto recorder = WireRecorder::open(rig, {traces.ring(), file ? &file->stream() : nullptr}, clock);
   if (!recorder) {
     session.note(recorder.error().message);
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness);
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time);
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));
@@ -343,6 +349,7 @@ void add_run_command(CLI::App& program, Session& session, Chosen& chosen) {
   options->ready.add_options(*command);
   options->rehearsing.add_options(*command);
   options->sound.add_options(*command);
+  options->time.add_options(*command);
   session.add_options(*command, true);
   command->footer(
       "In a terminal Space is GO and ? tells the other keys: hold, back, jump, loop, tempo. Else stdin is read in\n"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/clock.hpp"
 
+#include <ctime>
 #include <fstream>
 
+#include "core/boot_time.hpp"
 #include "core/check.hpp"
 #include "core/machine_time.hpp"
 
@@ -26,6 +28,12 @@ std::string machine_start() {
   std::string id;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, id);
   return id;
+}
+
+Duration boot_time() {
+  timespec now{};
+  (void)clock_gettime(CLOCK_BOOTTIME, &now);
+  return std::chrono::seconds(now.tv_sec) + Duration(now.tv_nsec);
 }
 
 void ManualClock::advance_to(Instant instant) {

@@ -17,8 +17,9 @@ int as_number(const std::optional<std::size_t>& cue) { return cue ? static_cast<
 
 }  // namespace
 
-CueThread::CueThread(controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock)
+CueThread::CueThread(controller::Rehearsal& rehearsal, TimeRules rules, SharedTarget& target, const Clock& clock)
     : rehearsal_(&rehearsal),
+      chase_(rehearsal, std::move(rules)),
       target_(target),
       clock_(clock),
       waiting_(clock),
@@ -73,9 +74,10 @@ void CueThread::run() noexcept {
     if (bars != std::exchange(barred_, bars)) rehearsal_->set_bars(bars, now);
     take_commands(now);
     go_over(now);
+    chase_.step(now);
     if (by_itself_.load(std::memory_order_relaxed)) press_by_itself(now);
     publish(now);
-    Instant next = std::min(now + kPublish, rehearsal_->next_event());
+    Instant next = std::min({now + kPublish, rehearsal_->next_event(), chase_.next_event(now)});
     if (by_itself_.load(std::memory_order_relaxed)) next = std::min(next, go_.next());
     waiting_.until(next);
   }
@@ -92,7 +94,8 @@ void CueThread::take_commands(Instant now) noexcept {
 
 void CueThread::carry_out(const Command& command, Instant now) noexcept {
   const auto standby = rehearsal_->engine().standby();
-  const controller::Outcome outcome = rehearsal_->apply(command, now);
+  if (command.kind == Command::Kind::time_fix) return chase_.hear(command);
+  const controller::Outcome outcome = chase_.take(command, now);
   if (outcome == controller::Outcome::cue_started && standby) go_at_[*standby] = now;
   (void)answers_.push({command, outcome, now});  // full: nobody listens
 }
@@ -105,6 +108,7 @@ void CueThread::go_over(Instant now) noexcept {
     next->rehearsal->carry_on(*rehearsal_, now);
     rehearsal_ = next->rehearsal;
     rehearsal_->step(now);
+    chase_.carry_on(*rehearsal_, now);
     go_at_.swap(next->go_at);
     plan_ = next->plan;
     publish(now);  // what the calling thread reads after `handed` is of this plan
@@ -130,6 +134,8 @@ void CueThread::publish(Instant now) noexcept {
   state.loop = rehearsal_->loop().value_or(controller::Rehearsal::Loop{});
   state.holds_at_end = rehearsal_->holds_at_end();
   state.percent = engine.percent();
+  state.wanted_percent = std::min(engine.wanted_percent(), engine.limit_percent());
+  state.time = chase_.view();
   state.limit_percent = engine.limit_percent();
   state.active = as_number(engine.active());
   state.standby = as_number(engine.standby());

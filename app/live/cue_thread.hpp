@@ -13,6 +13,7 @@
 #include "app/live/waiting.hpp"
 #include "app/show_on_wires.hpp"
 #include "controller/rehearsal.hpp"
+#include "controller/time/chase.hpp"
 #include "core/clock.hpp"
 
 namespace footlight::app {
@@ -25,6 +26,7 @@ struct ShowState {
   controller::Rehearsal::Loop loop{};
   bool holds_at_end = false;
   int percent = 100;                           ///< tempo
+  int wanted_percent = 100;                    ///< that was asked for, as far as the cue allows
   int limit_percent = 200;                     ///< of this cue
   int active = -1;                             ///< cue that runs, is frozen or waits to run
   int standby = -1;                            ///< cue that the next GO starts
@@ -35,6 +37,7 @@ struct ShowState {
   controller::Bars barred = 0;                 ///< what stands against whatever would come next, or holds what runs
   std::uint64_t inputs_off = 0;                ///< bit i: input i of the GO guard is switched off
   controller::Rehearsal::Whereabouts where{};  ///< for a program that may have to take the show up
+  controller::Chase::View time{};              ///< what comes of the source of time
   controller::BusTarget target{};
   std::uint32_t plan = 0;  ///< whose cues and switches these are (SharedTarget)
 };
@@ -51,7 +54,7 @@ struct Answer {
 class CueThread {
  public:
   /// Borrows everything; a rehearsal until another plan is taken.
-  CueThread(controller::Rehearsal& rehearsal, SharedTarget& target, const Clock& clock);
+  CueThread(controller::Rehearsal& rehearsal, TimeRules rules, SharedTarget& target, const Clock& clock);
   ~CueThread() { stop(); }
   CueThread(const CueThread&) = delete;
   CueThread& operator=(const CueThread&) = delete;
@@ -98,6 +101,7 @@ class CueThread {
   void publish(Instant now) noexcept;
 
   controller::Rehearsal* rehearsal_;
+  controller::Chase chase_;
   SharedTarget& target_;
   const Clock& clock_;
   Waiting waiting_;

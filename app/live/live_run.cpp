@@ -55,7 +55,7 @@ class LiveRun {
         options_(options),
         leadership_(leadership),
         plans_(wires, show.tempo, controller::Stands(plan), options.rehearsal),
-        cue_(plans_.rehearsal(), target_, clock_) {
+        cue_(plans_.rehearsal(), show.time, target_, clock_) {
     resets_.emplace(show, rig, *wires.schedule, options.plan_way);
     mutings_.emplace(show, plan, rig, *wires.schedule);
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
@@ -135,6 +135,7 @@ class LiveRun {
 };
 
 Result<LiveReport> LiveRun::play() {
+  if (options_.clock) options_.clock(clock_);
   const Instant began = clock_.now();
   BareTimer bare(clock_);
   controller::Rehearsal& rehearsal = plans_.rehearsal();

@@ -116,6 +116,7 @@ struct DeskView {
   std::shared_ptr<const Plan> way{};                  ///< the reset move that was planned last; null: none was
   Instant now{};                                      ///< clock; `show.at` is when the cue thread said so last
   // Filled in by the desk.
+  std::string time_source = "internal";
   std::vector<GateView> gates{};
   ReadinessView readiness{};
   std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"
@@ -153,6 +154,8 @@ struct LiveOptions {
   /// Before the first byte: the fastest tempo of each cue.
   std::function<void(const std::vector<controller::TempoLimit>&)> limits;
   ResetMoves::PlanWay plan_way;
+  /// Told the clock of the run before anything else happens.
+  std::function<void(const Clock&)> clock{};
   /// Whoever brings other plans; null: nobody. Borrowed
   PlanChanges* changes = nullptr;
   /// Waits for the desk, at most so long; none: the calling thread sleeps.

@@ -51,6 +51,7 @@ void ReadinessSurface::add_orders(RunDesk& desk) {
 
 void ReadinessSurface::look(const DeskView& view, RunDesk& desk) {
   judge_nodes(view);
+  judge_time(view);
   follow_swap(desk);
   keep_places(view, desk);
   if (arms_ && !readiness_.armed() && readiness_.scope() == Scope::live) {
@@ -86,6 +87,21 @@ void ReadinessSurface::judge_nodes(const DeskView& view) {
                               unverified > 0 ? fmt::format(", {} cannot be read back", unverified) : ""));
   readiness_.tell(Stage::looks, silent.empty() ? State::success : State::warning,
                   silent.empty() ? "uploaded" : "uploaded, not to who is silent");
+}
+
+/// A source that leads has to have been locked before the show; music goes with the show.
+void ReadinessSurface::judge_time(const DeskView& view) {
+  if (view.time_source == "internal" || readiness_.armed()) return;
+  const controller::TimeFollower::State lock = view.show.time.state;
+  const bool music = view.time_source.starts_with("audio ");
+  const bool locked = lock == controller::TimeFollower::State::locked;
+  // A rehearsal may go on without it.
+  const State missing = readiness_.scope() == Scope::live ? State::waiting : State::warning;
+  readiness_.tell(
+      Stage::time, music || locked ? State::success : missing,
+      view.time_source + (music                                           ? ": goes with the show"
+                          : lock == controller::TimeFollower::State::none ? ": nothing yet"
+                                                                          : ": " + std::string(to_text(lock))));
 }
 
 Result<std::string> ReadinessSurface::start_swap(const std::vector<std::string>& words) {

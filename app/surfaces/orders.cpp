@@ -27,6 +27,8 @@ const std::string_view kOrders =
     "placed                       people stand where they must be, by your word: no reset move\n"
     "cancel                       the jump that was asked for\n"
     "ok                           inputs that were switched off because they were stuck count again\n"
+    "time on; time off            follows the source of time, again; goes by its own clock\n"
+    "time here                    the way to where people next stand after the source of time\n"
     "state; help; quit            what is; this; ends the run and makes no lamp dark\n";
 
 namespace {
@@ -86,6 +88,9 @@ const std::map<std::string, Kind>& plain_orders() {
       {"placed", Kind::placed},
       {"cancel", Kind::cancel},
       {"ok", Kind::acknowledge},
+      {"time on", Kind::follow},
+      {"time off", Kind::unfollow},
+      {"time here", Kind::join},
   };
   return kOrders;
 }

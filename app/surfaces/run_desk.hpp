@@ -43,6 +43,8 @@ class RunDesk {
   /// An order that is understood already. @param order how to call it
   void say(controller::Command command, std::string order, const Speaker& who);
   void tell(RunEvent event);
+  /// Of the show itself: nobody is told what came of it.
+  void send(const controller::Command& command) { wishes_.commands.push_back(command); }
   /// What stands against walking, until it is taken back. @param bars bits of controller/bars.hpp
   void bar(controller::Bars bars, bool there) { wishes_.bars = there ? wishes_.bars | bars : wishes_.bars & ~bars; }
   /// Show and plan have other contents: told to all surfaces.

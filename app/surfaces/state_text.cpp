@@ -29,6 +29,14 @@ std::string_view to_text(ResetState state) {
   return "";
 }
 
+/// Before 00:00:00:00 the codes of the day before.
+std::string to_text_of(Duration since_zero, FrameRate rate) {
+  constexpr Duration kDay = std::chrono::hours(24);
+  Duration time = since_zero % kDay;
+  if (time < Duration{}) time += kDay;
+  return to_text(code_at(time, rate));
+}
+
 std::string_view to_text(GateView::State state) {
   switch (state) {
     case GateView::State::closed:
@@ -148,9 +156,41 @@ std::string StateText::line(const DeskView& view) const {
   const std::string notes = view.standby_notes.empty() ? "" : " (" + view.standby_notes + ")";
   std::string against;
   for (const std::string& one : view.against) against += (against.empty() ? " | NO GO: " : ", ") + one;
-  return fmt::format("{} {} count {:.0f} | {} | {}{}{} | {}", section_at(state.position),
-                     show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, what_happens(state),
-                     notes + freeze(view), against, buses(view.buses));
+  return fmt::format("{} {} count {:.0f} | {}{} | {}{}{} | {}", section_at(state.position),
+                     show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, time_line(view),
+                     what_happens(state), notes + freeze(view), against, buses(view.buses));
+}
+
+Json StateText::time_of(const DeskView& view) const {
+  const controller::Chase::View& time = view.show.time;
+  Json out{{"source", view.time_source}, {"lock", controller::to_text(time.state)}};
+  if (time.state == controller::TimeFollower::State::none) return out;
+  out["on"] = time.on;
+  out["armed"] = time.armed;
+  out["follows"] = time.follows;
+  out["position_s"] = to_seconds(time.source);
+  out["timecode"] = timecode_at(time.source);
+  out["off_s"] = to_seconds(time.off);
+  out["rate_percent"] = 100 * time.rate;
+  return out;
+}
+
+std::string StateText::timecode_at(Instant position) const {
+  return to_text_of(position.time_since_epoch() + show_.time.start, show_.time.rate);
+}
+
+/// "ltc tape.wav 01:00:12:04 locked, follows"; empty: the machine's own clock.
+std::string StateText::time_line(const DeskView& view) const {
+  using State = controller::TimeFollower::State;
+  const controller::Chase::View& time = view.show.time;
+  if (view.time_source == "internal") return {};
+  if (time.state == State::none) return fmt::format(" | {}: nothing yet", view.time_source);
+  const std::string what = !time.on       ? "off"
+                           : time.follows ? fmt::format("follows, {:+.0f} ms", to_seconds(time.off) * 1e3)
+                           : !time.armed  ? "waits for GO"
+                                          : fmt::format("{:+.1f} s from the show", to_seconds(time.off));
+  return fmt::format(" | {} {} {}, {}", view.time_source, timecode_at(time.source), controller::to_text(time.state),
+                     what);
 }
 
 std::string StateText::changes(const DeskView& view) {
@@ -158,6 +198,8 @@ std::string StateText::changes(const DeskView& view) {
   std::string now = fmt::format("{} {} {} {} {} {} {} {} {} {}", static_cast<int>(state.phase), state.reset.id,
                                 static_cast<int>(state.reset.state), state.active, state.standby, state.percent,
                                 state.target.current, state.holds_at_end, state.loops, view.roll_called);
+  now += fmt::format(" {} {} {} {}", static_cast<int>(state.time.state), state.time.on, state.time.armed,
+                     state.time.follows);
   for (const std::string& against : view.against) now += " " + against;
   for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
   for (const ReadinessView::Stage& stage : view.readiness.stages) now += fmt::format(" {}", stage.state);
@@ -226,6 +268,7 @@ std::string StateText::json(const DeskView& view) const {
       {"holds_at_end", state.holds_at_end},
       {"loop", std::move(loop)},
       {"reset", std::move(reset)},
+      {"time", time_of(view)},
       {"switch", view.schedule != nullptr ? view.schedule->plain(state.target.current) : state.target.current},
       {"gates", std::move(gates)},
       {"against", view.against},

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/live/live_run.hpp"
 #include "controller/cue_list.hpp"
 #include "core/plan.hpp"
@@ -33,6 +35,9 @@ class StateText {
 
  private:
   [[nodiscard]] std::string freeze(const DeskView& view) const;
+  [[nodiscard]] nlohmann::ordered_json time_of(const DeskView& view) const;
+  [[nodiscard]] std::string time_line(const DeskView& view) const;
+  [[nodiscard]] std::string timecode_at(Instant position) const;
   [[nodiscard]] std::string buses(const std::vector<BusView>& buses) const;
   [[nodiscard]] std::string_view section_at(Instant position) const;
   [[nodiscard]] std::string cue(int cue) const;

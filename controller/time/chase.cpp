@@ -58,13 +58,14 @@ bool Chase::runs() const noexcept {
 
 // ---- orders
 
-Outcome Chase::take(const Command& command, Outcome outcome, Instant now) noexcept {
+void Chase::hear(const Command& fix) noexcept {
+  view_.there = true;
+  follower_.take({fix.at, fix.position.time_since_epoch()});
+}
+
+Outcome Chase::take(const Command& command, Instant now) noexcept {
   using Kind = Command::Kind;
   switch (command.kind) {
-    case Kind::time_fix:
-      view_.there = true;
-      follower_.take({command.at, command.position.time_since_epoch()});
-      return Outcome::done;
     case Kind::follow:
       if (!view_.there) return Outcome::no_source;
       view_.on = view_.armed = true;
@@ -76,20 +77,16 @@ Outcome Chase::take(const Command& command, Outcome outcome, Instant now) noexce
       return Outcome::done;
     case Kind::join:
       return join(now);
-    case Kind::hold:
-    case Kind::hold_at_end:
-      if (!refused(outcome)) view_.armed = false;
-      return outcome;
-    case Kind::go:
-      if (!refused(outcome)) view_.armed = true;
-      return outcome;
-    case Kind::tempo:
-      // By hand: the source leads no more where it has only been lost.
-      if (leads_ && !view_.follows) let_go(now);
-      return outcome;
     default:
-      return outcome;
+      break;
   }
+  const Outcome outcome = rehearsal_->apply(command, now);
+  if (refused(outcome)) return outcome;
+  if (command.kind == Kind::hold || command.kind == Kind::hold_at_end) view_.armed = false;
+  if (command.kind == Kind::go) view_.armed = true;
+  // By hand: the source leads no more where it has only been lost.
+  if (command.kind == Kind::tempo && leads_ && !view_.follows) let_go(now);
+  return outcome;
 }
 
 Outcome Chase::join(Instant now) noexcept {

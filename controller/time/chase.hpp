@@ -59,9 +59,10 @@ class Chase {
   /// From now on that of another plan; the show stands.
   void carry_on(Rehearsal& rehearsal, Instant now) noexcept;
 
-  /// A source of time's own commands, and a look at all others. @param outcome of the rehearsal  @return what came of
-  /// it
-  Outcome take(const Command& command, Outcome outcome, Instant now) noexcept;
+  /// What the source has said: `time_fix`.
+  void hear(const Command& fix) noexcept;
+  /// Any other order: those for the rehearsal go on to it. @return what came of it
+  Outcome take(const Command& command, Instant now) noexcept;
   void step(Instant now) noexcept;
   /// Clock time at which `step` is wanted next; kNever before anything was heard.
   [[nodiscard]] Instant next_event(Instant now) const noexcept { return view_.there ? now + kPeriod : kNever; }

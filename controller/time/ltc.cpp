@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kQueue = 64;  // frames that wait
 constexpr std::size_t kAtOnce = 1024;
+constexpr long long kFramesToRestart = 10;
 constexpr double kSameRate = 0.06;
 constexpr double kOtherRate = 0.015;
 
@@ -77,9 +78,16 @@ void LtcDecoder::take(std::span<const float> samples, Instant began, const std::
     ltc_decoder_write_float(state_->decoder, piece.data(), count, taken_);
     taken_ += static_cast<long long>(count);
     samples = samples.subspan(count);
+    // The library learns how long a bit lasts from what it hears: after a second of hiss it may take timecode for
+    // silence and would never come back.
+    if (taken_ - heard_ > kFramesToRestart * sample_rate_ / frames_counted(rate_)) {
+      restart();
+      heard_ = taken_;
+    }
     LTCFrameExt frame;
     while (ltc_decoder_read(state_->decoder, &frame) != 0) {
       const LTCFrame& ltc = frame.ltc;
+      heard_ = taken_;
       const auto two = [](unsigned tens, unsigned units) { return static_cast<int>(tens * 10 + units); };
       Timecode code{two(ltc.hours_tens, ltc.hours_units), two(ltc.mins_tens, ltc.mins_units),
                     two(ltc.secs_tens, ltc.secs_units), two(ltc.frame_tens, ltc.frame_units), FrameRate::fps30};

@@ -45,6 +45,7 @@ class LtcDecoder {
   bool knows_rate_ = false;
   std::optional<FrameRate> seen_;  ///< at the end of the last second
   long long taken_ = 0;            ///< samples
+  long long heard_ = 0;            ///< of them, when the last frame came or the library began anew
   long long last_end_ = 0;         ///< sample at which the last frame ended
   long long last_length_ = 0;
   std::optional<Timecode> last_;

@@ -22,7 +22,7 @@ class TimeFollower {
     freewheels,  ///< nothing for kSilent: goes on at the last speed
     lost,        ///< nothing for longer than it may freewheel
   };
-  static constexpr Duration kSilent = milliseconds(170);
+  static constexpr Duration kSilent = milliseconds(150);
   static constexpr double kSlowest = 0.24;  ///< speed of a source that can be followed
   static constexpr double kFastest = 2.1;
 

@@ -5,12 +5,7 @@ namespace footlight::planner {
 
 Slabs::Slabs(const Grid& grid, std::span<const double> at, const std::vector<std::vector<Knot>>& paths, double keep_m,
              double late_share, double fastest_m)
-    : at_(at),
-      paths_(paths),
-      keep_m_(keep_m),
-      late_share_(late_share),
-      fastest_m_(fastest_m),
-      slabs_(at.size() - 1) {
+    : at_(at), paths_(paths), keep_m_(keep_m), late_share_(late_share), fastest_m_(fastest_m), slabs_(at.size() - 1) {
   const Point first = grid.centre(CellIndex(0));
   const Point last = grid.centre(CellIndex::of(grid.size() - 1));
   low_ = {first.x - grid.pitch_m(), first.y - grid.pitch_m()};

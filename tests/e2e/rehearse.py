@@ -182,6 +182,59 @@ def make_cases(Stage, program):
             desk.say("quit")
             self.assertEqual(desk.process.wait(20), 0)
 
+        def test_timecode_from_a_midi_device_brings_the_cues(self):
+            self.make_show()
+            self.serve()
+            device = self.map + ".midi"
+            os.mkfifo(device)
+            writer = os.open(device, os.O_RDWR)
+            self.addCleanup(os.close, writer)
+            desk = Desk(self, program(), "--time", "mtc:" + device)
+            desk.until("roll call", ready=True)
+            self.assertEqual(desk.state["time"], {"source": "mtc " + device, "lock": "none"})
+            desk.say("time here")
+            wait_for(lambda: any("no source of time is followed" in a for a in desk.answers()), "nothing to join yet")
+            stop = threading.Event()
+            tape = threading.Thread(target=self.play_mtc, args=(writer, 24 * 3600 - 2, stop))
+            tape.start()
+            self.addCleanup(tape.join)
+            self.addCleanup(stop.set)
+            desk.until("counted in by the source", phase="counts-in")
+            desk.until("cue 1", phase="runs", cue="1")
+            desk.until("cue 2 without GO", phase="runs", cue="2")
+            self.assertTrue(desk.state["time"]["follows"])
+            self.assertLess(abs(desk.state["time"]["off_s"]), 0.08, desk.state)
+            stop.set()
+            wait_for(lambda: any("the show goes on at its last speed" in line.get("alarm", "") for line in desk.lines), "the alarm")
+            desk.until("where everybody next stands", phase="stands")
+            self.assertTrue(any("lost: the show holds where everybody next stands" in line.get("alarm", "") for line in desk.lines), desk.lines)
+            desk.say("quit")
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assert_floor(desk.report())
+
+        @staticmethod
+        def play_mtc(writer, begins_s, stop):
+            """Quarter frames of 25 frames a second, in real time."""
+            began = time.monotonic()
+            for quarter in range(100 * 60):
+                wait = began + quarter / 100 - time.monotonic()
+                if stop.wait(max(0.0, wait)):
+                    return
+                frame = (begins_s * 25 + quarter // 8 * 2) % (24 * 3600 * 25)
+                hours, minutes, seconds, frames = frame // 90000, frame // 1500 % 60, frame // 25 % 60, frame % 25
+                number = [frames, seconds, minutes, 1 << 5 | hours][quarter % 8 // 2]
+                piece = number >> 4 if quarter % 2 else number & 15
+                os.write(writer, bytes([0xF1, quarter % 8 << 4 | piece]))
+
+        def test_a_source_of_time_that_is_none_is_one_clear_error(self):
+            self.make_show()
+            self.serve()
+            for name, error in (("smpte", '"smpte" is no source of time'), ("ltc:none.wav", "none.wav: "), ("ltc:alsa:hw:31", 'no sound input "hw:31"'), ("mtc:/none", "/none")):
+                run = subprocess.run([program(), "run", self.show, "--transport-map", self.map, "--time", name], capture_output=True, text=True, timeout=60)
+                self.assertIn("error: --time: ", run.stderr)
+                self.assertIn(error, run.stderr)
+                self.assertIn(run.returncode, (2, 4), run.stderr)
+
         def terminal(self, *options):
             """`footlight run` at a terminal: (process, our end, its end)."""
             ours, its = pty.openpty()

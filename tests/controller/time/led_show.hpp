@@ -37,13 +37,12 @@ struct LedShow {
     command.kind = controller::Command::Kind::time_fix;
     command.at = at;
     command.position = Instant(source);
-    chase->take(command, controller::Outcome::done, clock.now());
+    chase->hear(command);
   }
   controller::Outcome say(controller::Command::Kind kind) {
     controller::Command command;
     command.kind = kind;
-    const auto outcome = rehearsal->apply(command, clock.now());
-    return chase->take(command, outcome, clock.now());
+    return chase->take(command, clock.now());
   }
   /// What happens now.
   void step() {

@@ -73,6 +73,26 @@ TEST(Ltc, IsHeardThroughNoise) {
   EXPECT_LT(worst_ms(fixes, played), 2);
 }
 
+TEST(Ltc, IsHeardAgainAfterASecondOfHissOrOfSilence) {
+  for (const int sample_rate : {8'000, 44'100, 48'000, 96'000}) {
+    for (const double noise : {0.0, 0.02, 0.08, 0.3}) {
+      Tape played = tape(FrameRate::fps25, 3);
+      played.pieces.push_back({.kind = TapePiece::Kind::silent, .lasts_s = 1});
+      played.pieces.push_back({.lasts_s = 3});
+      LtcDecoder decoder(sample_rate, FrameRate::fps25);
+      std::vector<float> sound = sound_of(played, sample_rate, 0, 7);
+      Rng rng(8);
+      const auto second = static_cast<std::size_t>(sample_rate);
+      for (std::size_t i = 3 * second; i < 4 * second; ++i)
+        sound[i] += static_cast<float>(noise * (2 * rng.uniform() - 1));
+      const auto fixes = decode(decoder, sound);
+      const auto again = std::ranges::find_if(fixes, [](const TimeFix& fix) { return fix.at > instant_at(104); });
+      ASSERT_NE(again, fixes.end()) << sample_rate << " Hz, hiss " << noise;
+      EXPECT_LT(again->at, instant_at(104.6)) << sample_rate << " Hz, hiss " << noise;
+    }
+  }
+}
+
 TEST(Ltc, AGapAtTheEndOfASecondTeachesNoWrongRate) {
   // The last frame of a second is missing: 25 frames a second would look like 24.
   for (double gap_s = 0.9; gap_s < 1.1; gap_s += 0.02) {
