@@ -173,8 +173,91 @@ Status<> mark_absent(Show& show, const std::vector<std::string>& ids) {
   return Done{};
 }
 
+Status<> mark_covers(Show& show, const std::vector<std::string>& covers) {
+  std::vector<std::string> known;
+  for (const Performer& performer : show.performers) known.push_back(performer.id);
+  std::vector<std::string> who = known;
+  for (const Understudy& one : show.understudies) who.push_back(one.id);
+  const auto unknown = [&](const std::string& id, const std::vector<std::string>& ids) {
+    return input_error(fmt::format("--cover: nobody has the id {} ({})", config::in_quotes(id),
+                                   config::suggestion(id, ids, "people")));
+  };
+  for (const std::string& text : covers) {
+    const std::size_t sign = text.find('=');
+    if (sign == std::string::npos) {
+      return input_error(fmt::format("--cover: {} is no cover (who is absent, then =, then who takes the way: 4=zoe)",
+                                     config::in_quotes(text)));
+    }
+    const std::string absent = text.substr(0, sign);
+    const std::string cover = text.substr(sign + 1);
+    const auto found = std::ranges::find(known, absent);
+    if (found == known.end()) return unknown(absent, known);
+    if (std::ranges::find(who, cover) == who.end()) return unknown(cover, who);
+    Performer& performer = show.performers[static_cast<std::size_t>(found - known.begin())];
+    performer.absent = true;
+    performer.cover = cover;
+  }
+  for (const Performer& performer : show.performers) {
+    if (performer.cover.empty()) continue;
+    const auto same = [&](const Performer& one) { return one.cover == performer.cover; };
+    if (std::ranges::count_if(show.performers, same) > 1) {
+      return input_error(fmt::format("--cover: {} cannot cover two people", performer.cover));
+    }
+    const auto self = std::ranges::find(show.performers, performer.cover, &Performer::id);
+    if (self != show.performers.end() && self->absent) {
+      return input_error(fmt::format("--cover: {} is absent and cannot cover {}", performer.cover, performer.id));
+    }
+  }
+  return Done{};
+}
+
+namespace {
+
+/// Understudies take the place of whom they cover, and her wearable; performers who cover take the wearable with them.
+void take_covers(config::LoadedShow& loaded) {
+  Show& show = loaded.show;
+  for (std::size_t p = 0; p < show.performers.size(); ++p) {
+    Performer& performer = show.performers[p];
+    if (!performer.absent || performer.cover.empty()) continue;
+    const auto by = std::ranges::find(show.performers, performer.cover, &Performer::id);
+    if (by != show.performers.end()) {
+      const auto taker = PerformerIndex::of(by - show.performers.begin());
+      const auto worn_by = [](PerformerIndex who) {
+        return [who](const Channel& channel) {
+          return channel.kind == Channel::Kind::wearable && channel.performer == who;
+        };
+      };
+      const auto hers = worn_by(PerformerIndex::of(p));
+      const bool has_one = std::ranges::any_of(
+          loaded.rig.nodes, [&](const Node& node) { return std::ranges::any_of(node.channels, hers); });
+      for (Node& node : loaded.rig.nodes) {
+        for (Channel& channel : node.channels) {
+          if (has_one && worn_by(taker)(channel))
+            channel = Channel{};
+          else if (hers(channel))
+            channel.performer = taker;
+        }
+      }
+      if (has_one) by->wearable = performer.wearable;
+      continue;
+    }
+    const auto understudy = std::ranges::find(show.understudies, performer.cover, &Understudy::id);
+    if (understudy == show.understudies.end()) continue;
+    performer.id = understudy->id;
+    performer.name = understudy->name;
+    performer.radius_m = understudy->radius_m;
+    performer.max_speed_mps = understudy->max_speed_mps;
+    performer.absent = false;
+    performer.cover.clear();
+    std::erase_if(show.understudies, [&](const Understudy& one) { return one.id == performer.id; });
+  }
+}
+
+}  // namespace
+
 void take_people(config::LoadedShow& loaded, const Plan& plan) {
   Show& show = loaded.show;
+  take_covers(loaded);
   const std::size_t people = show.performers.size();
   if (plan.performers.size() == people) return;
   std::vector<std::optional<PerformerIndex>> now(people);

@@ -34,6 +34,10 @@ void take_durations(Show& show, const Plan& plan);
 /// These people do not come either, besides whom the show file says. Errors: an id that nobody has; nobody is left.
 [[nodiscard]] Status<> mark_absent(Show& show, const std::vector<std::string>& ids);
 
+/// "4=zoe": performer 4 is absent, and zoe, an understudy or a performer, takes the whole way. Errors: nobody is called
+/// so, somebody covers two people or is absent herself.
+[[nodiscard]] Status<> mark_covers(Show& show, const std::vector<std::string>& covers);
+
 /// Leaves out of the show, and of its rig, whom the plan does without, so that people have the same numbers in both:
 /// who is absent, her own places and pins, her wearable. Lists of cells without names lose places that stay empty.
 void take_people(config::LoadedShow& loaded, const Plan& plan);

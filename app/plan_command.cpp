@@ -131,6 +131,10 @@ void add_plan_command(CLI::App& program, Session& session, Chosen& chosen) {
       ->add_option("--absent", options->choice.absent,
                    "who does not come today, besides those of the show file: ids, commas between them")
       ->delimiter(',');
+  command
+      ->add_option("--cover", options->choice.covers,
+                   "who takes the whole way of somebody absent: 4=zoe, commas between them; nobody else changes")
+      ->delimiter(',');
   command->add_flag("--afresh", options->choice.afresh,
                     "plan everything anew, whatever is kept of earlier plannings (the plan is the same)");
   command

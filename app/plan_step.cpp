@@ -202,6 +202,7 @@ Result<PlannedShow> read(Session& session, const PlanChoice& choice) {
   PlannedShow out;
   out.loaded = std::move(loaded).value();
   if (auto done = mark_absent(out.loaded.show, choice.absent); !done) return std::move(done).error();
+  if (auto done = mark_covers(out.loaded.show, choice.covers); !done) return std::move(done).error();
   return out;
 }
 

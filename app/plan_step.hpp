@@ -27,6 +27,7 @@ struct PlanChoice {
   bool afresh = false;  ///< take nothing from `stages`
   std::string stages;   ///< file of what earlier plannings gave, used where they fit; empty: none
   std::vector<std::string> absent;  ///< ids of people who do not come, besides those of the show file
+  std::vector<std::string> covers;  ///< "4=zoe": absent, and who takes her whole way
   /// A plan file that the user named may break its limits: it is taken, and marked as not valid.
   bool unchecked = false;
 

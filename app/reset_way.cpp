@@ -42,19 +42,14 @@ double longest_walk_s(const Show& show, const Plan& plan, const std::vector<Cell
   return longest_s;
 }
 
-}  // namespace
-
-Result<Plan> plan_reset_way(const Show& show, const Plan& plan, Instant from, Instant to, double count_in_counts,
-                            const std::atomic<bool>& abandoned) {
-  const PlanSection& here = section_at(plan, from);
-  const PlanSection& there = section_at(plan, to);
-  const std::vector<CellIndex> cells = controller::cells_at(plan, from);
-  const std::vector<CellIndex> goals = controller::cells_at(plan, to);
+/// @param here, there of which the limits hold
+Result<Plan> way_between(const Show& show, const Plan& plan, const std::vector<CellIndex>& cells,
+                         const std::vector<CellIndex>& goals, const PlanSection& here, const PlanSection& there,
+                         double bpm, double count_in_counts, const std::atomic<bool>& abandoned) {
   const auto limit = [&](const PlanSection& section) {
     return section.max_speed_mps > 0 ? section.max_speed_mps : show.stage.max_speed_mps;
   };
   const double speed_mps = std::min(limit(here), limit(there));
-  const double bpm = show.tempo.bpm_at(show.tempo.count_at(from));
 
   Show way = show;
   way.cues.clear();
@@ -83,6 +78,23 @@ Result<Plan> plan_reset_way(const Show& show, const Plan& plan, Instant from, In
   // The place of the message is a show that nobody wrote.
   const std::size_t text = why.find(": error: ");
   return refusal(text == std::string::npos ? why : why.substr(text + 9));
+}
+
+double bpm_at(const Show& show, Instant at) { return show.tempo.bpm_at(show.tempo.count_at(at)); }
+
+}  // namespace
+
+Result<Plan> plan_reset_way(const Show& show, const Plan& plan, Instant from, Instant to, double count_in_counts,
+                            const std::atomic<bool>& abandoned) {
+  return way_between(show, plan, controller::cells_at(plan, from), controller::cells_at(plan, to),
+                     section_at(plan, from), section_at(plan, to), bpm_at(show, from), count_in_counts, abandoned);
+}
+
+Result<Plan> plan_way(const Show& show, const Plan& plan, const std::vector<CellIndex>& cells, Instant to,
+                      double count_in_counts, const std::atomic<bool>& abandoned) {
+  const PlanSection& there = section_at(plan, to);
+  return way_between(show, plan, cells, controller::cells_at(plan, to), there, there, bpm_at(show, to), count_in_counts,
+                     abandoned);
 }
 
 }  // namespace footlight::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <vector>
 
 #include "core/plan.hpp"
 #include "core/result.hpp"
@@ -16,5 +17,10 @@ namespace footlight::app {
 /// @return ErrorKind::refused when none was found that is four times as long as the longest walk; interrupted
 [[nodiscard]] Result<Plan> plan_reset_way(const Show& show, const Plan& plan, Instant from, Instant to,
                                           double count_in_counts, const std::atomic<bool>& abandoned);
+
+/// The same from wherever people stand to where they stand at an instant of the plan.
+/// @param cells one for each performer of the plan, distinct
+[[nodiscard]] Result<Plan> plan_way(const Show& show, const Plan& plan, const std::vector<CellIndex>& cells, Instant to,
+                                    double count_in_counts, const std::atomic<bool>& abandoned);
 
 }  // namespace footlight::app

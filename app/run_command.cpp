@@ -16,6 +16,7 @@
 
 #include "app/commission/wipe_record.hpp"
 #include "app/console/console_options.hpp"
+#include "app/edit/show_editing.hpp"
 #include "app/growing_file.hpp"
 #include "app/live/live_report.hpp"
 #include "app/live/live_run.hpp"
@@ -160,9 +161,9 @@ Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& opt
   return std::unique_ptr<HeardCountIn>();
 }
 
-Result<LiveReport> play(Session& session, const Options& options, const PlannedShow& planned, const Rig& rig,
+Result<LiveReport> play(Session& session, const Options& options, PlannedShow& planned, Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
-                        const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time) {
+                        const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time, const Attendance& attendance) {
   const auto journal = journal_in(state_folder(options.state));
   const std::uint32_t epoch = cut && cut->epoch != 0 ? cut->epoch : next_epoch(journal);
   const Show& show = planned.loaded.show;
@@ -176,6 +177,9 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   const SteadyClock clock;
   const auto remote = RemoteControl::open(options.remote, show, planned.plan(), desk, clock, !options.go);
   if (!remote) return remote.error();
+  ShowEditing editing(desk,
+                      {planned, rig, options.choice.show, state_folder(options.state), options.count_in(), attendance});
+  desk.add(editing);
   LiveOptions live;
   NodeBoard board(rig.nodes.size());
   live.nodes = *console ? &(*console)->nodes() : &board;
@@ -190,6 +194,8 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go || cut);
   desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
+  live.changes = &editing;
+  editing.on_taken([&] { surviving.journal().plan_is(config::digest_of(planned.plan())); });
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
   const SteadyClock sound_clock;
@@ -202,7 +208,8 @@ Result<LiveReport> play(Session& session, const Options& options, const PlannedS
   live.stop = session.stop();
   live.wire_log = wire_log;
   Rehearsing rehearsing(show, planned.plan(), desk, traces.folder(), options.rehearsing);
-  live.desk = [&](const DeskView& view) {
+  live.desk = [&](DeskView view) {
+    view.edit = editing.view();
     DeskWishes wishes = desk.look(view);
     wishes.ends = wishes.ends || surviving.handed_over();
     return wishes;
@@ -252,12 +259,37 @@ Status<> keep(Session& session, WireRecorder& recorder, std::optional<GrowingFil
   return file ? file->keep() : Status<>(Done{});
 }
 
+/// What planning this show has given before, for whatever is edited while it runs.
+std::string stages_for_edits(const Options& options) {
+  const std::filesystem::path folder = state_folder(options.state);
+  const std::string stages = (folder / "coming.stages").string();
+  const std::string plan = options.choice.plan.empty() ? plan_file_beside(options.choice.show) : options.choice.plan;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::filesystem::copy_file(stage_file_beside(plan), stages, std::filesystem::copy_options::update_existing, error);
+  return stages;
+}
+
+/// Who was absent when the run was cut off that is taken up, and the plan that played then; else nobody.
+Attendance attendance_of(const Options& options, PlanChoice& choice) {
+  const std::filesystem::path folder = state_folder(options.state);
+  if (!options.surviving.resume) {
+    forget_taken(folder);
+    return {};
+  }
+  return take_up_taken(folder, choice);
+}
+
 int run(Session& session, const Options& options) {
   if (options.surviving.supervised) {
     return supervise("/proc/self/exe", own_arguments(), kSilence, [&](const std::string& line) { session.note(line); });
   }
-  auto planned = plan_for(session, options.choice, false);
+  PlanChoice choice = options.choice;
+  choice.stages = stages_for_edits(options);
+  const Attendance attendance = attendance_of(options, choice);
+  auto planned = plan_for(session, choice, false);
   if (!planned) return session.fail(planned.error());
+  if (planned->keep_stages) (void)planned->keep_stages();  // else the first edit is planned from nothing
   // A plan that is not proved, or whose lamps cannot be lit in time, never opens a wire.
   if (const auto refused = refusal_of(planned->planned)) return session.fail(*refused);
   std::optional<CutOff> cut;
@@ -307,7 +339,8 @@ int run(Session& session, const Options& options) {
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time);
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time,
+                           attendance);
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));

@@ -92,6 +92,30 @@ std::vector<MappingReader> read_groups(ShowReading& show, MappingReader& perform
   return kept;
 }
 
+void read_understudies(ShowReading& show, MappingReader& performers, const IdIndex& ids) {
+  std::set<std::string> known;
+  for (MappingReader& one : performers.mappings("understudies")) {
+    const auto id = one.text("id");
+    Understudy out;
+    out.radius_m = one.quantity("radius").value_or(0);
+    out.max_speed_mps = one.quantity("max_speed").value_or(0);
+    for (const Written& written : one.list("covers")) {
+      each_person(show.show(), ids, one, written, [&](PerformerIndex performer) {
+        out.covers.push_back(performer);
+        return true;
+      });
+    }
+    if (!id) continue;
+    if (ids.contains(*id) || !known.insert(*id).second) {
+      one.error("id", "somebody else has the id " + in_quotes(*id), "ids of performers and understudies are unique");
+      continue;
+    }
+    out.id = *id;
+    out.name = one.text("name").value_or(*id);
+    show.show().understudies.push_back(std::move(out));
+  }
+}
+
 void count_performers(ShowReading& show, int count) {
   for (int i = 1; i <= count; ++i) {
     Performer performer;
@@ -157,6 +181,7 @@ void read_performers(ShowReading& show, MappingReader performers) {
       if (slow) performer.max_speed_mps = *speed_mps;
     }
   }
+  read_understudies(show, performers, ids);
   check_room(show, performers);
 }
 

@@ -96,6 +96,32 @@ const Listing& group_listing() {
   return kListing;
 }
 
+const Listing& understudy_listing() {
+  static const Listing kListing{
+      "performers.understudies[]",
+      "Somebody who stands by, with no place of her own until she covers somebody.",
+      {
+          {.key = "id", .type = Type::text, .doc = "Unique, and no performer's.", .required = true},
+          {.key = "name", .type = Type::text, .doc = "As people call her.", .otherwise = "the id"},
+          {.key = "covers",
+           .type = Type::members,
+           .doc = "Whose way she has learned, as `members`: `cover 4` asks for her. She can be told to cover anybody.",
+           .otherwise = "nobody",
+           .list = true},
+          {.key = "radius",
+           .type = Type::length,
+           .doc = "Of her body, as in a roster.",
+           .otherwise = "the stage's clearance holds",
+           .range = {0, 10, true}},
+          {.key = "max_speed",
+           .type = Type::speed,
+           .doc = "She walks no faster; a way that is faster is refused.",
+           .otherwise = "the section's or the stage's",
+           .range = {0, 20, true}},
+      }};
+  return kListing;
+}
+
 const Listing& performers_listing() {
   static const Listing kListing{
       "performers",
@@ -111,6 +137,12 @@ const Listing& performers_listing() {
            .doc = "Groups and their colours.",
            .otherwise = "none",
            .listing = &group_listing(),
+           .list = true},
+          {.key = "understudies",
+           .type = Type::mapping,
+           .doc = "Who stands by for absent people.",
+           .otherwise = "nobody",
+           .listing = &understudy_listing(),
            .list = true},
           {.key = "colour", .type = Type::colour, .doc = "Of who is in no group.", .fallback = "#FFFFFF"},
       },

@@ -28,6 +28,17 @@ struct Performer {
   double max_speed_mps = 0;  ///< 0: the section's or the stage's limit
   std::string wearable;      ///< id of the wearable in the rig; empty: none
   bool absent = false;       ///< does not come: a stand-in takes the places, or they stay empty
+  std::string cover{};  ///< of who is absent: id of the understudy or performer who takes the whole way; empty: the
+                        ///< planner's choice
+};
+
+/// Somebody who stands by and has no way of her own until she covers somebody.
+struct Understudy {
+  std::string id;                      ///< no performer's
+  std::string name;                    ///< as people call her; the id where none is given
+  std::vector<PerformerIndex> covers;  ///< whom she has learned
+  double radius_m = 0;                 ///< as a performer's
+  double max_speed_mps = 0;            ///< as a performer's
 };
 
 struct Group {
@@ -193,6 +204,7 @@ struct Show {
   std::string file;     ///< path of the show file
   Stage stage;
   std::vector<Performer> performers;
+  std::vector<Understudy> understudies;
   std::vector<Group> groups;
   TempoMap tempo;
   TimeRules time;

@@ -122,10 +122,11 @@ class ShowPlanner {
     plan.version = show_.version;
     plan.stage = show_.stage;
     for (const Performer& performer : show_.performers) {
-      if (performer.absent) continue;
-      plan.performers.push_back(performer.id);
-      plan.radius_m.push_back(performer.radius_m);
-      plan.max_speed_mps.push_back(performer.max_speed_mps);
+      const auto cover = understudy_of(show_, performer);
+      if (performer.absent && !cover) continue;
+      plan.performers.push_back(cover ? show_.understudies[*cover].id : performer.id);
+      plan.radius_m.push_back(cover ? show_.understudies[*cover].radius_m : performer.radius_m);
+      plan.max_speed_mps.push_back(cover ? show_.understudies[*cover].max_speed_mps : performer.max_speed_mps);
     }
   }
 
@@ -221,11 +222,16 @@ class ShowPlanner {
     }
     std::size_t present = 0;
     for (std::size_t p = 0; p < tracks.size(); ++p) {
-      if (show_.performers[p].absent) continue;
+      if (gone(p)) continue;
       if (present != p) tracks[present] = std::move(tracks[p]);
       ++present;
     }
     tracks.resize(present);
+  }
+
+  /// Her track has nobody; an understudy takes it whole.
+  [[nodiscard]] bool gone(std::size_t p) const {
+    return show_.performers[p].absent && !understudy_of(show_, show_.performers[p]);
   }
 
   [[nodiscard]] bool in_picture(const Stop& stop, std::uint32_t slot) const {
@@ -248,7 +254,7 @@ class ShowPlanner {
       formation.frame = station.frame;
       formation.in_picture = station.in_picture - stop.given_way;
       for (std::size_t p = 0; p < show_.performers.size(); ++p) {
-        if (!show_.performers[p].absent) {
+        if (!gone(p)) {
           formation.cells.push_back(cell_of(chain, k, p));
         } else if (in_picture(stop, slot_[k][p])) {
           --formation.in_picture;

@@ -34,6 +34,13 @@ double fastest_mps(const Grid& grid, const std::vector<Mark>& track) {
 
 }  // namespace
 
+std::optional<std::size_t> understudy_of(const Show& show, const Performer& absent) {
+  const auto found = std::find_if(show.understudies.begin(), show.understudies.end(),
+                                  [&](const Understudy& one) { return one.id == absent.cover; });
+  if (!absent.absent || found == show.understudies.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - show.understudies.begin());
+}
+
 std::vector<StandIn> stand_ins(const Show& show, const std::vector<std::vector<Mark>>& tracks, bool wide_enough) {
   std::vector<StandIn> out;
   const auto& people = show.performers;
@@ -44,6 +51,14 @@ std::vector<StandIn> stand_ins(const Show& show, const std::vector<std::vector<M
     worth.push_back(on_stage(show, tracks[p]));
     free.push_back(people[p].absent ? 0 : 1);
   }
+  const auto covering = [&](const Performer& absent) {
+    return std::find_if(people.begin(), people.end(), [&](const Performer& one) { return one.id == absent.cover; });
+  };
+  for (const Performer& one : people) {
+    // Who covers somebody is not taken for somebody else before.
+    const auto cover = one.absent && !one.cover.empty() ? covering(one) : people.end();
+    if (cover != people.end()) free[static_cast<std::size_t>(cover - people.begin())] = 0;
+  }
   const std::vector<char> bound = bound_groups(show);
   const auto own_group = [&](const Performer& one) {
     return one.group && bound[one.group->at()] != 0 ? one.group : std::nullopt;
@@ -51,6 +66,16 @@ std::vector<StandIn> stand_ins(const Show& show, const std::vector<std::vector<M
   for (std::size_t a = 0; a < people.size(); ++a) {
     if (!people[a].absent) continue;
     StandIn& one = out.emplace_back(StandIn{PerformerIndex::of(a), {}, worth[a], {}, tracks[a].size()});
+    if (!people[a].cover.empty()) {
+      const auto cover = covering(people[a]);
+      if (cover != people.end()) {
+        one.taker = PerformerIndex::of(cover - people.begin());
+        one.given_up = worth[one.taker->at()];
+      } else {
+        one.understudy = understudy_of(show, people[a]);
+      }
+      continue;
+    }
     const double pace_mps = fastest_mps(show.stage.grid, tracks[a]);
     const auto can_walk = [&](const Performer& who) {
       const bool fast_enough = who.max_speed_mps <= 0 || pace_mps <= who.max_speed_mps * (1 + kSpeedTolerance);
@@ -72,7 +97,12 @@ std::vector<StandIn> stand_ins(const Show& show, const std::vector<std::vector<M
 
 std::string stand_in_text(const Show& show, const StandIn& stand_in) {
   const std::string absent = fmt::format("performer {} is absent: ", show.performers[stand_in.absent.at()].id);
-  if (stand_in.on_stage == Duration{}) return absent + "nobody has to stand in, since the way never leaves the reserve";
+  if (stand_in.understudy) {
+    return fmt::format("{}{} covers the whole way; nobody else changes", absent,
+                       show.understudies[*stand_in.understudy].id);
+  }
+  if (stand_in.on_stage == Duration{} && !stand_in.taker)
+    return absent + "nobody has to stand in, since the way never leaves the reserve";
   if (!stand_in.taker) {
     return absent + "the place stays empty, since nobody who is on stage for less time is free and can walk the way";
   }

@@ -18,14 +18,20 @@ struct StandIn {
   Duration on_stage{};                  ///< of the track: out of the reserve
   Duration given_up{};                  ///< of the taker's own track: out of the reserve
   std::size_t marks = 0;                ///< of the track
+  /// Takes the way and gives nothing up for it, having none of her own: a place in the show's list.
+  std::optional<std::size_t> understudy{};
 
   friend bool operator==(const StandIn&, const StandIn&) = default;
 };
 
+/// Who has no way of her own and covers this absent person; nothing: nobody does. A place in the show's list
+[[nodiscard]] std::optional<std::size_t> understudy_of(const Show& show, const Performer& absent);
+
 /// The fewest changes for the others: for each absent person, in order, whoever comes, stands in for nobody yet, can
 /// walk the track, is of the same group where groups have places of their own, and is on stage least (the first of
 /// equals), if that is less than the track is on stage. Nobody else changes, and a track that never leaves the reserve
-/// needs nobody.
+/// needs nobody. Where the show says who covers her it is that one, whoever that is: what she cannot walk the judge
+/// finds.
 /// @param tracks of everybody in the show, as if all of them came
 /// @param wide_enough every track keeps the distances of the widest people; else a taker is as narrow as the absent
 /// O(marks + absent x people)

@@ -40,6 +40,8 @@ class PlanChanges {
   virtual void taken(const ShowOnWires& plays) = 0;
   /// The show no longer stands where it stood: nothing has changed.
   virtual void not_taken() = 0;
+  /// The wires of `begin` go.
+  virtual void end() = 0;
 };
 
 }  // namespace footlight::app

@@ -414,7 +414,9 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
   const auto limits = limit_tempo(show, plan, rig, **wires, **wires);
   if (options.limits) options.limits(limits);
   if (options.changes != nullptr) options.changes->begin(**wires);
-  return LiveRun(show, plan, rig, **wires, ports, options, leadership).play();
+  auto report = LiveRun(show, plan, rig, **wires, ports, options, leadership).play();
+  if (options.changes != nullptr) options.changes->end();
+  return report;
 }
 
 }  // namespace footlight::app

@@ -107,6 +107,27 @@ struct FreezeView {
   std::uint32_t resume_pairs = 0;  ///< who may touch when it goes on after a freeze here
 };
 
+/// What has changed and does not play yet, and who does not come.
+struct EditView {
+  enum class State : std::uint8_t {
+    none,
+    planning,
+    wrong,   ///< `text` says what; what plays stays as it is
+    waits,   ///< for `take` or `discard`
+    taking,  ///< as soon as the show stands
+  };
+  struct Absent {
+    std::string id;
+    std::string cover;  ///< who takes the way; "repaired": whoever changes least; empty: it stays empty
+  };
+  State state = State::none;
+  std::string text{};
+  std::size_t transitions = 0;  ///< that change
+  std::size_t people = 0;       ///< whose walks change
+  std::size_t untold = 0;       ///< people whose walks have changed and who have not been told
+  std::vector<Absent> absent{};
+};
+
 /// What the desk sees.
 struct DeskView {
   ShowState show;
@@ -117,6 +138,7 @@ struct DeskView {
   Instant now{};                                      ///< clock; `show.at` is when the cue thread said so last
   // Filled in by the desk.
   std::string time_source = "internal";
+  EditView edit{};
   std::vector<GateView> gates{};
   ReadinessView readiness{};
   std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"

@@ -9,9 +9,7 @@
 #include "core/check.hpp"
 
 namespace footlight::app {
-namespace {
-
-std::string text_of(const Plan& way) {
+std::string way_text(const Plan& way) {
   std::size_t walkers = 0;
   double longest_m = 0;
   for (const auto& track : way.tracks) {
@@ -26,8 +24,6 @@ std::string text_of(const Plan& way) {
   return fmt::format("reset: {} {}, at most {:.1f} m, in {:.1f} s with the count-in, never nearer than {:.2f} m",
                      walkers, walkers == 1 ? "person walks" : "people walk", longest_m, to_seconds(time), clearance_m);
 }
-
-}  // namespace
 
 ResetMoves::ResetMoves(const Show& show, const Rig& rig, controller::CueSchedule& schedule, PlanWay plan_way)
     : show_(show), rig_(rig), schedule_(schedule), plan_way_(std::move(plan_way)) {}
@@ -73,7 +69,7 @@ void ResetMoves::plan(const Key& key) {
     if (!plan_way_) return {Error{ErrorKind::refused, "nobody plans ways here"}, {}};
     auto way = plan_way_(key.first, key.second, abandoned_);
     if (!way) return {std::move(way).error(), {}};
-    return {controller::build_reset(show_, *way, rig_, schedule_), text_of(*way),
+    return {controller::build_reset(show_, *way, rig_, schedule_), way_text(*way),
             std::make_shared<const Plan>(*std::move(way))};
   });
 }

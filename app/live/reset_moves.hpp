@@ -19,6 +19,9 @@
 
 namespace footlight::app {
 
+/// What a way is, for people: "reset: 12 people walk, at most 5.1 m, ...".
+[[nodiscard]] std::string way_text(const Plan& way);
+
 /// Plans the ways back that a rehearsal asks for, beside the show, one at a time, and keeps them: a loop asks for the
 /// same one again and again. One thread calls.
 class ResetMoves {

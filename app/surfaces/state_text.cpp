@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/surfaces/state_text.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -143,6 +144,20 @@ std::string StateText::freeze(const DeskView& view) const {
                      std::ceil(show_.tempo.count_at(freeze.none_from)));
 }
 
+std::string StateText::edit(const EditView& edit) {
+  using State = EditView::State;
+  std::string text;
+  if (edit.state == State::planning) text = " | a change is being planned";
+  if (edit.state == State::wrong) text = " | WHAT HAS CHANGED IS WRONG";
+  if (edit.state == State::waits || edit.state == State::taking) {
+    text = fmt::format(" | changed: {} transitions, {} people, {}", edit.transitions, edit.people,
+                       edit.state == State::waits ? "take or discard" : "taken where the show stands next");
+  }
+  if (!edit.absent.empty()) text += fmt::format(" | {} absent", edit.absent.size());
+  if (edit.untold > 0) text += fmt::format(" | {} to be told", edit.untold);
+  return text;
+}
+
 std::string StateText::line(const DeskView& view) const {
   const ShowState& state = view.show;
   const double count = show_.tempo.count_at(state.position);
@@ -156,9 +171,9 @@ std::string StateText::line(const DeskView& view) const {
   const std::string notes = view.standby_notes.empty() ? "" : " (" + view.standby_notes + ")";
   std::string against;
   for (const std::string& one : view.against) against += (against.empty() ? " | NO GO: " : ", ") + one;
-  return fmt::format("{} {} count {:.0f} | {}{} | {}{}{} | {}", section_at(state.position),
+  return fmt::format("{} {} count {:.0f} | {}{} | {}{}{} | {}{}", section_at(state.position),
                      show_.tempo.measure_beat(std::floor(count)), std::floor(count), tempo, time_line(view),
-                     what_happens(state), notes + freeze(view), against, buses(view.buses));
+                     what_happens(state), notes + freeze(view), against, buses(view.buses), edit(view.edit));
 }
 
 Json StateText::time_of(const DeskView& view) const {
@@ -206,6 +221,8 @@ std::string StateText::changes(const DeskView& view) {
   now += view.readiness.armed ? " armed" : " refused";
   for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
   now += fmt::format(" {} {}", view.freeze.known, view.muted);
+  now += fmt::format(" {} {} {}", static_cast<int>(view.edit.state), view.edit.people, view.edit.untold);
+  for (const EditView::Absent& one : view.edit.absent) now += " " + one.id + "=" + one.cover;
   return now;
 }
 
@@ -237,6 +254,17 @@ std::string StateText::json(const DeskView& view) const {
       readiness["stages"].push_back({{"name", stage.name}, {"state", stage.state}, {"text", stage.text}});
     }
   }
+  Json absent = Json::array();
+  for (const EditView::Absent& one : view.edit.absent) {
+    absent.push_back({{"id", one.id}, {"cover", one.cover.empty() ? Json(nullptr) : Json(one.cover)}});
+  }
+  constexpr std::array<std::string_view, 5> kEdits{"none", "planning", "wrong", "waits", "taking"};
+  const Json changes{{"state", kEdits.at(static_cast<std::size_t>(view.edit.state))},
+                     {"text", view.edit.text},
+                     {"transitions", view.edit.transitions},
+                     {"people", view.edit.people},
+                     {"untold", view.edit.untold},
+                     {"absent", std::move(absent)}};
   Json freeze = nullptr;
   if (view.freeze.known) {
     const Instant none_from = view.freeze.none_from;
@@ -270,6 +298,7 @@ std::string StateText::json(const DeskView& view) const {
       {"reset", std::move(reset)},
       {"time", time_of(view)},
       {"switch", view.schedule != nullptr ? view.schedule->plain(state.target.current) : state.target.current},
+      {"edit", changes},
       {"gates", std::move(gates)},
       {"against", view.against},
       {"readiness", std::move(readiness)},

@@ -39,6 +39,8 @@ class StateText {
   [[nodiscard]] std::string time_line(const DeskView& view) const;
   [[nodiscard]] std::string timecode_at(Instant position) const;
   [[nodiscard]] std::string buses(const std::vector<BusView>& buses) const;
+  /// What has changed, who is absent, who has to be told: " | 3 absent"; empty: nothing.
+  [[nodiscard]] static std::string edit(const EditView& edit);
   [[nodiscard]] std::string_view section_at(Instant position) const;
   [[nodiscard]] std::string cue(int cue) const;
 

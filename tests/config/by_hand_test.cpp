@@ -171,6 +171,26 @@ TEST_F(ByHand, CellsOfGroupsAreAsManyAsTheirPeople) {
             "or whose places they are)\n");
 }
 
+TEST_F(ByHand, UnderstudiesHaveIdsOfTheirOwn) {
+  const auto load_with = [&](const std::string& list) {
+    std::string text = std::string(kHead) + film("hold: 1 count");
+    folder_.write("show.yaml", text.replace(text.find("{count: 5"), 9, "{count: 5, understudies: " + list));
+    return load_show(folder_.path("show.yaml"));
+  };
+  const auto loaded = load_with("[{id: zoe, name: Zoe Q, covers: [1, 3-4], max_speed: 2 m/s}, {id: b, radius: 40 cm}]");
+  ASSERT_TRUE(loaded) << loaded.error().to_text();
+  const Show& read = loaded->show;
+  ASSERT_EQ(read.understudies.size(), 2U);
+  EXPECT_EQ(read.understudies[0].name, "Zoe Q");
+  EXPECT_EQ(read.understudies[0].covers, (std::vector{PerformerIndex(0), PerformerIndex(2), PerformerIndex(3)}));
+  EXPECT_EQ(read.understudies[0].max_speed_mps, 2);
+  EXPECT_EQ(read.understudies[1].name, "b");
+  EXPECT_EQ(read.understudies[1].radius_m, 0.4);
+  const auto wrong = load_with("[{id: 3}, {id: z, covers: [9]}, {id: z}, {name: x}]");
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(folder_.without_folder(wrong.error().to_text()), "");
+}
+
 TEST_F(ByHand, AbsentPeopleAreNamedOnce) {
   const Show read = show(film("hold: 1 count") + "absent: [1, 3-4]\n");
   std::vector<bool> absent;

@@ -20,6 +20,7 @@ import unittest
 
 import console
 import devices
+import editing
 import live
 import ola
 import rehearse
@@ -96,6 +97,7 @@ Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
 Survive = survive.make_cases(Stage, footlight, lambda: PROGRAM, FULL)
 Remote = remote.make_cases(Stage, footlight, lambda: PROGRAM, rehearse.Desk, stage.SHOW)
+Editing = editing.make_cases(Stage, lambda: PROGRAM)
 
 
 class Docs(Case):

@@ -97,6 +97,35 @@ TEST(StandIns, SomebodyOfTheReserveWalksTheWayAndNobodyElseChanges) {
   }
 }
 
+TEST(StandIns, AnUnderstudyTakesTheWholeWayAndNobodyElseChanges) {
+  Show show = two_sections(36);
+  const auto all = plan_show(show, two_films());
+  ASSERT_TRUE(all && all->plan.valid);
+  const auto absent = who(show, all->plan, false);
+  ASSERT_TRUE(absent);
+  show.understudies = {{"zoe", "Zoe", {}, 0.1, 9}};
+  show.performers[*absent].absent = true;
+  show.performers[*absent].cover = "zoe";
+  const auto covered = plan_show(show, two_films());
+  ASSERT_TRUE(covered && covered->plan.valid);
+  Plan expected = all->plan;
+  expected.performers[*absent] = "zoe";
+  expected.radius_m[*absent] = 0.1;
+  expected.max_speed_mps[*absent] = 9;
+  expected.sections[0].notes.push_back("performer " + show.performers[*absent].id +
+                                       " is absent: zoe covers the whole way; nobody else changes");
+  EXPECT_EQ(covered->plan.tracks, expected.tracks);
+  EXPECT_EQ(covered->plan.performers, expected.performers);
+  EXPECT_EQ(covered->plan.max_speed_mps, expected.max_speed_mps);
+  EXPECT_EQ(covered->plan.formations, expected.formations);
+  EXPECT_THAT(covered->plan.sections[0].notes, testing::Contains(expected.sections[0].notes.back()));
+  show.understudies[0].max_speed_mps = 0.01;
+  const auto slow = plan_show(show, two_films());
+  ASSERT_TRUE(slow);
+  EXPECT_FALSE(slow->plan.valid) << "she cannot walk it";
+  EXPECT_THAT(slow->refusal, testing::Contains(HasSubstr("zoe")));
+}
+
 TEST(StandIns, NobodyStandsInForWhoNeverLeavesTheReserve) {
   Show show = two_sections(36);
   const auto all = plan_show(show, two_films());
@@ -189,6 +218,13 @@ TEST(StandIns, EachTakesOneWayFirstComeFirstServed) {
   EXPECT_EQ(all.takers(), Takers{});
   all.away({0, 1});
   EXPECT_EQ(all.takers(), (Takers{PerformerIndex(2), PerformerIndex(3)}));
+}
+
+TEST(StandIns, WhoeverIsToldToCoverDoesSoAndNobodyElseTakesHer) {
+  ByHandTracks all;
+  all.away({0, 1});
+  all.show.performers[1].cover = "3";
+  EXPECT_EQ(all.takers(), (Takers{PerformerIndex(3), PerformerIndex(2)})) << "3 would have been the first choice for 1";
 }
 
 TEST(StandIns, WhoIsTooSlowOrTooWideDoesNotStandIn) {

@@ -204,6 +204,7 @@ class TwoChanges : public PlanChanges {
     small_.plan = plans_[taken_++];
   }
   void not_taken() override { ADD_FAILURE(); }
+  void end() override { wires_ = nullptr; }
 
   bool allowed = false;
   [[nodiscard]] std::size_t count() const { return taken_; }
