@@ -188,7 +188,15 @@ TEST_F(ByHand, UnderstudiesHaveIdsOfTheirOwn) {
   EXPECT_EQ(read.understudies[1].radius_m, 0.4);
   const auto wrong = load_with("[{id: 3}, {id: z, covers: [9]}, {id: z}, {name: x}]");
   ASSERT_FALSE(wrong);
-  EXPECT_EQ(folder_.without_folder(wrong.error().to_text()), "");
+  EXPECT_EQ(
+      folder_.without_folder(wrong.error().to_text()),
+      "show.yaml:4:44: error: performers.understudies[0].id: somebody else has the id \"3\" (ids of performers and "
+      "understudies are unique)\n"
+      "show.yaml:4:65: error: performers.understudies[1].covers[0]: no performer has the id \"9\" (ids run from 1 to "
+      "5)\n"
+      "show.yaml:4:75: error: performers.understudies[2].id: somebody else has the id \"z\" (ids of performers and "
+      "understudies are unique)\n"
+      "show.yaml:4:79: error: performers.understudies[3].id: the key is missing (Unique, and no performer's.)\n");
 }
 
 TEST_F(ByHand, AbsentPeopleAreNamedOnce) {
