@@ -18,7 +18,11 @@ Plan plan_of_three() {
   plan.performers = {"1", "2", "10", "9"};
   const auto& track = plan.tracks[0];
   plan.transitions.clear();
-  for (std::size_t m = 0; m + 1 < track.size(); ++m) plan.transitions.push_back({track[m].time, track[m + 1].time});
+  for (std::size_t m = 0; m + 1 < track.size(); ++m) {
+    TransitionFacts& one = plan.transitions.emplace_back();
+    one.start = track[m].time;
+    one.end = track[m + 1].time;
+  }
   return plan;
 }
 
