@@ -135,7 +135,7 @@ def make_cases(Stage, program):
             desk.say("solo left", "note left too slow", "note all smile", "mute nobody")
             desk.until("the solo", muted="right")
             quiet = lambda: {line["cell"] for line in self.changes() if (line["colour"], line["brightness"], line["effect"]) == ("#0000FF", 40, "steady")}
-            wait_for(lambda: len(quiet()) == 6, "the places of the six who are muted to be quiet")
+            wait_for(lambda: len(quiet()) == 11, "six places of muted people, and five that they are announced for, to be quiet")
             wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in desk.state["buses"]), "all nodes right")
             self.assertIn('mute: no group "nobody" (there are left, right; "no group")', desk.answers())
             desk.process.kill()
