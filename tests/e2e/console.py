@@ -164,9 +164,8 @@ def make_cases(Stage, footlight, program):
             status, headers, plan = self.get("/api/plan.bin")
             self.assertEqual((plan[:4], struct.unpack_from("<4I", plan, 4)[:3]), (b"FLPM", (1, 1, 12)))
             self.play_to_the_end(page)
-            nodes = wait_for(lambda: (n := page.nodes()) and all(flags == 1 for _, flags in n.values()) and n, "every node right")
-            shown = {switch for switch, _ in nodes.values()}
-            self.assertEqual(shown, {page.state["switch"]})
+            wait_for(lambda: set(page.nodes().values()) == {(page.state["switch"], 1)}, "every node right, at the switch that is lit")
+            self.assertEqual(len(page.nodes()), 12)
             status, headers, looks = self.get(f"/api/looks/{page.state['switch']}.bin")
             self.assertEqual((status, looks[:4], len(looks)), (200, b"FLLK", 20 + 32 * 12))
             self.assertEqual(self.get("/api/looks/4000000000.bin")[0], 404)
