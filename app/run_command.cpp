@@ -163,7 +163,8 @@ Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& opt
 
 Result<LiveReport> play(Session& session, const Options& options, PlannedShow& planned, Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
-                        const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time, const Attendance& attendance) {
+                        const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time,
+                        const Attendance& attendance) {
   const auto journal = journal_in(state_folder(options.state));
   const std::uint32_t epoch = cut && cut->epoch != 0 ? cut->epoch : next_epoch(journal);
   const Show& show = planned.loaded.show;
@@ -339,8 +340,8 @@ int run(Session& session, const Options& options) {
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time,
-                           attendance);
+  const auto report =
+      play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time, attendance);
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));

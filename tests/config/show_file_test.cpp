@@ -272,7 +272,7 @@ TEST_F(ShowFile, WantsAllKindsOfValuesWhereTheyBelong) {
       "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, reserve, "
       "clearance, max_speed, lag)\n"
       "show.yaml:4:13: error: performers: a list stands where a mapping belongs (keys: count, from, groups, "
-      "colour)\n"
+      "understudies, colour)\n"
       "show.yaml:5:1: error: music: nothing stands where a mapping belongs (keys: tempo, changes, meter, pickup)\n"
       "show.yaml:6:11: error: sections: a mapping stands where a list belongs (write [...] or lines that begin "
       "with -)\n");

@@ -17,9 +17,9 @@
 namespace footlight::app {
 namespace {
 
-using tests::RawClient;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+using tests::RawClient;
 
 TEST(ConsolePlace, IsAPortOfThisMachineOrANumericAddressAndAPort) {
   EXPECT_EQ(Console::place_from("8440")->address, "127.0.0.1");
@@ -68,7 +68,8 @@ TEST(ConsoleOfARun, HandsOverBetweenDeskAndPage) {
     EXPECT_EQ(wishes.commands[0].percent, 80);
     EXPECT_EQ(wishes.commands[0].source, controller::GoSource::page);
     desk.answered({wishes.commands[0], controller::Outcome::done, {}});
-    EXPECT_THAT(page.heard("answer"), HasSubstr(R"({"order":"tempo 80","who":"Ana","refused":false,"text":"done","id":4})"));
+    EXPECT_THAT(page.heard("answer"),
+                HasSubstr(R"({"order":"tempo 80","who":"Ana","refused":false,"text":"done","id":4})"));
     console.plan_taken();
     (void)desk.look(view);
     EXPECT_EQ(page.heard("epoch"), R"({"epoch":2})");
