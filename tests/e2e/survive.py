@@ -83,12 +83,12 @@ def make_cases(Stage, footlight, program, full):
             lead, second, _ = self.understudy(make=False)
             lead.process.send_signal(signal.SIGSTOP)
             second.until("it leads", ready=True)
+            lead.say("go")  # its operator does not know
             lead.process.send_signal(signal.SIGCONT)
             second.say("go")
             second.until("the end of cue 1", phase="stands", standby="2")
             time.sleep(0.3)
             second.say("go")
-            lead.say("go")  # its operator does not know
             second.until("the end", phase="finished")
             self.assertEqual(lead.process.wait(30), 3)
             second.say("quit")
