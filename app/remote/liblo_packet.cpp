@@ -47,21 +47,29 @@ bool has_known_types(std::span<const std::byte> bytes) {
   return true;
 }
 
+/// The library aligns to four bytes what some machines want at eight.
+template <class T>
+T copied(const void* argument) {
+  T value;
+  std::memcpy(&value, argument, sizeof value);
+  return value;
+}
+
 /// @return false: of a type that no order has
-bool take_value(char type, const lo_arg& argument, std::vector<OscValue>& values) {
+bool take_value(char type, const void* argument, std::vector<OscValue>& values) {
   switch (type) {
     case LO_INT32:
-      values.emplace_back(argument.i);
+      values.emplace_back(copied<std::int32_t>(argument));
       return true;
     case LO_FLOAT:
-      values.emplace_back(static_cast<double>(argument.f));
+      values.emplace_back(static_cast<double>(copied<float>(argument)));
       return true;
     case LO_DOUBLE:
-      values.emplace_back(argument.d);
+      values.emplace_back(copied<double>(argument));
       return true;
     case LO_STRING:
     case LO_SYMBOL:
-      values.emplace_back(std::string(&argument.s));
+      values.emplace_back(std::string(static_cast<const char*>(argument)));
       return true;
     case LO_TRUE:
     case LO_FALSE:
@@ -85,7 +93,7 @@ Status<> read_message(std::span<const std::byte> bytes, std::vector<OscMessage>&
   if (types.size() > kMostValues) return input_error("more than 16 arguments");
   lo_arg** arguments = lo_message_get_argv(message.get());
   for (std::size_t i = 0; i < types.size(); ++i) {
-    if (!take_value(types[i], *arguments[i], read.values)) {
+    if (!take_value(types[i], arguments[i], read.values)) {
       return input_error(kWrongType);
     }
   }
