@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -82,7 +83,16 @@ struct CellsSource {
   /// Whose place each cell is, where the file has a column of groups (then not assigned); nothing: of who is in none.
   std::vector<std::optional<GroupIndex>> groups{};
 };
-using Source = std::variant<VideoSource, ImageSource, CellsSource>;
+struct Part;  // core/parts.hpp
+/// One formation that is put together of drawings: shapes, lettering, pictures, meshes; each for some of the people.
+struct PartsSource {
+  std::shared_ptr<const std::vector<Part>> parts;  ///< at least one
+};
+/// A painting that says where people stand, where they go and what is in the way, by its colours (core/motion.hpp).
+struct PaintingSource {
+  std::string path;  ///< as resolved against the show file's folder
+};
+using Source = std::variant<VideoSource, ImageSource, CellsSource, PartsSource, PaintingSource>;
 
 /// Key frames of a video, Li 2020 Eq. 3-4.
 struct Sampling {
@@ -91,8 +101,9 @@ struct Sampling {
   bool snap_to_count = true;               ///< key frames fall on whole counts
 };
 
-/// `joint` is meant for videos; other formations are matched as by `hierarchical`.
-enum class PlannerModel { flat, hierarchical, joint };
+/// `joint` is meant for videos; other formations are matched as by `hierarchical`. The last four are models of motion:
+/// they lead people along curved ways from the formation before to the section's own.
+enum class PlannerModel { flat, hierarchical, joint, collective, srd, painted, swarm };
 enum class PairingCost { squared, euclidean };
 
 struct PlannerOptions {
@@ -144,17 +155,20 @@ struct Override {
   Position position;
 };
 
+struct Motion;  // core/motion.hpp
+
 /// A stretch of the show with one source of formations: [start, start + duration + hold].
 struct Section {
   std::string name;  ///< unique; the stable id
   Source from;
   double start_count = 1;
-  /// A video is stretched over it; 0 for images and cells. 0 for a video: its own length, which is known only when it
-  /// is decoded (config::settle_film_lengths puts it here).
+  /// A video is stretched over it, a model of motion moves people through it; 0 for other images and cells. 0 for a
+  /// video: its own length, which is known only when it is decoded (config::settle_film_lengths puts it here).
   double duration_counts = 0;
   double hold_counts = 0;  ///< everybody stands still after the last formation
   Sampling sampling;
   PlannerOptions planner;
+  std::shared_ptr<const Motion> motion;  ///< of a model of motion; else nothing
   std::optional<double> max_speed_mps;
   std::vector<SectionKey> keys;  ///< of a video; without any the sampled formations are the key formations
   std::vector<Override> overrides;

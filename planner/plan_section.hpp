@@ -28,6 +28,8 @@ struct Station {
   int in_picture = 0;            ///< how many of the cells are in the picture
   bool key = true;               ///< a key formation
   int moved = 0;                 ///< people moved by hand
+  /// Whose place each cell is, nothing: of who is in no group; empty: places are nobody's in particular.
+  std::vector<std::optional<GroupIndex>> groups;
   std::vector<std::pair<PerformerIndex, CellIndex>> pins;  ///< who stands where by name
 };
 

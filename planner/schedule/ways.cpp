@@ -44,7 +44,7 @@ bool inside(Point p, const std::vector<Point>& outline) {
 Ways::Ways(const Stage& stage, double keep_m)
     : grid_(stage.grid),
       keep_m_(keep_m),
-      blocked_count_(static_cast<int>(stage.blocked.size())),
+      blocked_cells_(stage.blocked),
       blocked_(static_cast<std::size_t>(stage.grid.size()), 0),
       standable_(static_cast<std::size_t>(stage.grid.size()), 1) {
   for (const CellIndex cell : stage.blocked) blocked_[cell.at()] = 1;

@@ -18,7 +18,8 @@ class Ways {
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] double keep_m() const { return keep_m_; }
   /// Nothing stands in anybody's way on this stage.
-  [[nodiscard]] bool open() const { return blocked_count_ == 0; }
+  [[nodiscard]] bool open() const { return blocked_cells_.empty(); }
+  [[nodiscard]] const std::vector<CellIndex>& blocked() const { return blocked_cells_; }  ///< ascending
   /// Cells on which somebody may stand, one flag a cell.
   [[nodiscard]] const CellFlags& standable() const { return standable_; }
   [[nodiscard]] bool can_stand(CellIndex cell) const { return standable_[cell.at()] != 0; }
@@ -39,7 +40,7 @@ class Ways {
   Grid grid_;
   double keep_m_ = 0;
   double cell_radius_m_ = 0;
-  int blocked_count_ = 0;
+  std::vector<CellIndex> blocked_cells_;
   CellFlags blocked_;
   CellFlags standable_;
 };
