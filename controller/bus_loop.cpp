@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where a bus loop stands in the show and what others may know of it. What its nodes answer: bus_answers.cpp; what it
+// sends: bus_work.cpp.
 #include "controller/bus_loop.hpp"
 
 #include <algorithm>
@@ -10,22 +12,9 @@ namespace {
 
 constexpr Duration kSuspect = milliseconds(1000);  // T1 of the trust model
 constexpr double kPollShare = 0.2;                 // of the bus, for the promise of T1
-constexpr Duration kFirstBackoff = milliseconds(50);
-constexpr Duration kFirstRest = milliseconds(20);  // of a device that is busy
-constexpr Duration kLongestRest = milliseconds(640);
-constexpr Duration kAskAgain = milliseconds(250);
-constexpr Duration kLongestBackoff = milliseconds(1000);
-constexpr Duration kHopeful = milliseconds(2500);  // T2: so long a node that is silent is asked more often
-constexpr Duration kHopefulBackoff = milliseconds(100);
-constexpr Duration::rep kHopefulShare = 3;  // and costs at most a quarter of the bus's idle time
-constexpr std::uint8_t kMissesToQuarantine = 3;
-constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
-constexpr int kMostOperations = 64;        // a step ends, whatever a driver says
-constexpr Duration kRetryDown = milliseconds(100);
+constexpr int kMostOperations = 64;                // a step ends, whatever a driver says
 constexpr Duration kRetryBusy = milliseconds(1);
 constexpr Duration kPutOff = milliseconds(100);  // a switch that is put off by more has been called off
-constexpr std::uint8_t kStateShowing = 1;
-constexpr std::uint8_t kStateHold = 2;
 
 }  // namespace
 
@@ -267,176 +256,6 @@ void BusLoop::switch_over(bool latched) noexcept {
       node.verify = latched && !node.right && (offered || can_.pushes_status);
     }
   }
-}
-
-// ---- what the wire tells
-
-BusLoop::NodeState* BusLoop::find(NodeIndex node) noexcept {
-  const std::int32_t position = node.at() < by_node_.size() ? by_node_[node.at()] : -1;
-  return position < 0 ? nullptr : &nodes_[static_cast<std::size_t>(position)];
-}
-
-void BusLoop::on_event(const drivers::DeviceEvent& event) {
-  using Kind = drivers::DeviceEvent::Kind;
-  if (event.kind == Kind::bus_down || event.kind == Kind::bus_up) {
-    down_until_ = event.kind == Kind::bus_down ? now_ + kRetryDown : now_;
-    for (NodeState& node : nodes_) {
-      node.right = false;
-      node.in_flight = false;
-      node.pending = kNone;
-      node.verify = can_.readback && can_.sequenced_latch;
-    }
-    return;
-  }
-  NodeState* node = find(event.node);
-  if (node == nullptr) return;
-  switch (event.kind) {
-    case Kind::preloaded:
-      node->in_flight = false;
-      node->stale = false;
-      node->rest = {};
-      if (node->offered != kNone && event.sequence == sequence_of(node->offered)) node->pending = node->offered;
-      if (!can_.pushes_status) {
-        node->misses = 0;
-        if (!can_.readback) node->quarantined = false;
-      }
-      break;
-    case Kind::showing:
-      on_showing(*node, event);
-      break;
-    case Kind::booted:
-      on_boot(*node);
-      break;
-    case Kind::missed:
-      on_miss(*node);
-      break;
-    case Kind::rejected:
-      on_refusal(*node, event.again);
-      break;
-    case Kind::content:
-      node->misses = 0;
-      on_content(event);
-      break;
-    case Kind::bus_down:
-    case Kind::bus_up:
-      break;
-  }
-}
-
-void BusLoop::on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept {
-  node.misses = 0;
-  node.quarantined = false;
-  const bool fresh = event.sequence == sequence_of(current_);
-  node.shown = event.sequence;
-  const bool guides = event.state == kStateShowing || event.state == kStateHold;
-  if (guides && event.crc == node.crc && (node.right || fresh)) {
-    node.verify = false;
-    on_confirmed(node);
-    return;
-  }
-  if (can_.pushes_status && !fresh) return;  // an answer to the latch before
-  node.right = false;
-  node.verify = false;
-  if (node.offered == current_ && node.offers >= kOffersToMiss) on_miss(node);
-}
-
-void BusLoop::on_confirmed(NodeState& node) noexcept {
-  node.right = true;
-  node.rest = {};
-  if (node.counted) return;
-  node.counted = true;
-  (can_.readback ? counters_.deliveries : counters_.unverified) += changed_channels(node);
-}
-
-void BusLoop::on_miss(NodeState& node) noexcept {
-  ++counters_.misses;
-  node.in_flight = false;
-  if (node.misses == 0) node.silent_since = now_;
-  if (!can_.readback) node.right = false;  // perhaps what it was given has not reached it
-  if (can_.pushes_status) {
-    // Unconfirmed: it gets preload and latch again. Who was right before has most often lost an answer, no more; it is
-    // asked again soon.
-    node.verify = false;
-    if (node.misses > 0) node.right = false;
-    if (node.right) refresh_at_ = std::min(refresh_at_, now_ + kAskAgain);
-    wake_due_ = wake_due_ || (!node.right && !node.quarantined);
-  } else if (node.offered != next_ || node.pending == next_) {
-    node.verify = can_.readback;  // a question was missed: ask again at once
-  }
-  if (node.quarantined) {
-    node.verify = false;
-    wait_after_miss(node);
-    return;
-  }
-  if (++node.misses >= kMissesToQuarantine) quarantine(node);
-}
-
-void BusLoop::on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept {
-  using Again = drivers::DeviceEvent::Again;
-  if (again == Again::later && !node.quarantined && node.rest < kLongestRest) {
-    node.in_flight = false;
-    node.rest = std::max(kFirstRest, 2 * node.rest);
-    node.rests_until = now_ + node.rest;
-    return;
-  }
-  if (again == Again::soon) return on_miss(node);
-  ++counters_.misses;
-  node.in_flight = false;
-  if (!node.quarantined) quarantine(node);
-  node.backoff = kLongestBackoff;
-  node.ask_at = now_ + node.backoff;
-}
-
-void BusLoop::quarantine(NodeState& node) noexcept {
-  ++counters_.quarantines;
-  node.quarantined = true;
-  node.right = false;
-  node.verify = false;
-  node.pending = kNone;
-  node.offered = kNone;
-  node.backoff = kFirstBackoff;
-  node.ask_at = now_ + node.backoff;
-}
-
-bool BusLoop::hopeful(const NodeState& node) const noexcept { return now_ - node.silent_since < kHopeful; }
-
-/// A node that has answered a moment ago is more likely to be misheard than dead: a bad line takes many answers in a
-/// row, and a second between two questions would leave its lamps wrong for as long.
-void BusLoop::wait_after_miss(NodeState& node) noexcept {
-  Duration most = kLongestBackoff;
-  if (hopeful(node)) {
-    most = std::max(kHopefulBackoff, kHopefulShare * longest_[static_cast<std::size_t>(Operation::ask)]);
-  }
-  node.backoff = std::min(2 * node.backoff, most);
-  node.ask_at = now_ + node.backoff;
-}
-
-void BusLoop::on_boot(NodeState& node) noexcept {
-  ++counters_.boots;
-  node.misses = 0;
-  node.quarantined = false;
-  node.right = false;
-  node.verify = false;
-  node.in_flight = false;
-  node.pending = kNone;
-  node.offered = kNone;
-  if (node.switch_on.stagger.count() > 0 && node.turn <= now_) {
-    // Its supply may have been off: then all of its nodes come back at the same time.
-    Instant& next = next_turn_[node.switch_on.supply];
-    node.turn = std::max(now_, next);
-    next = node.turn + node.switch_on.stagger;
-  }
-  for (WornState& worn : worn_) {
-    if (&nodes_[worn.position] == &node) worn.held = worn.pending = kNone;
-  }
-  // It has lost its look table, too: first what it must show, the rest in idle time.
-  for (std::size_t i = 1; i < schedule_->looks().size(); ++i) uploads_[i] = std::uint8_t{kUploads};
-  need_looks(current_, node);
-  need_looks(next_, node);
-}
-
-void BusLoop::need_looks(std::size_t k, const NodeState& node) noexcept {
-  for (const LookIndex look : looks(k, node)) urgent_[look] = look != kDark;
 }
 
 // ---- what others may know

@@ -156,6 +156,7 @@ class BusLoop final : private drivers::EventSink {
   void on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept;
   void quarantine(NodeState& node) noexcept;
   void wait_after_miss(NodeState& node) noexcept;
+  void rest_for_long(NodeState& node) noexcept;
   void on_boot(NodeState& node) noexcept;
   void on_confirmed(NodeState& node) noexcept;
   [[nodiscard]] NodeState* find(NodeIndex node) noexcept;

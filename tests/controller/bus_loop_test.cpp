@@ -405,6 +405,27 @@ TEST(SequencedBus, WhatIsRefusedForGoodIsNotSentAgainButOnceASecond) {
   for (std::size_t i = 1; i < tries.size(); ++i) EXPECT_GE(tries[i] - tries[i - 1], milliseconds(990)) << i;
 }
 
+TEST(SequencedBus, ANodeThatAnswersButFollowsSomebodyElseIsOfferedItsLooksAgainAndThenLeftInQuarantine) {
+  Bench bench(schedule_of(3, 6, every_switch), 3, false);
+  auto& node = bench.driver.node(1);
+  node.showing.assign(kChannels, 19);
+  node.shown_sequence = 200;
+  node.state = 1;
+  bench.driver.lost = [](Kind kind, NodeIndex of, Instant) { return kind == Kind::latch && of == NodeIndex(1); };
+  bench.stands_at = 0;  // and the looks of switch 1 wait for a GO
+  bench.run_until(instant_at(3));
+  EXPECT_GE(preloads_of(bench.driver, 1).size(), 8U);
+  EXPECT_GE(bench.loop.counters().quarantines, 1U);
+  EXPECT_LT(bench.driver.count(Kind::ask), 150U) << "asking alone changes nothing";
+  EXPECT_GE(bench.driver.count(Kind::heartbeat), 11U);
+  EXPECT_TRUE(bench.right(0, 0) && bench.right(2, 0));
+
+  bench.driver.lost = [](Kind, NodeIndex, Instant) { return false; };
+  bench.run_until(instant_at(5));
+  EXPECT_TRUE(bench.right(1, 0)) << "as soon as it listens";
+  EXPECT_TRUE(bench.loop.settled());
+}
+
 TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
   Bench bench(schedule_of(3, 4, every_switch), 3, false);
   const CueSchedule& schedule = bench.schedule;

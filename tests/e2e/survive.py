@@ -78,7 +78,7 @@ def make_cases(Stage, footlight, program, full):
             self.assertEqual(second.process.wait(20), 0)
             self.assert_floor(report)
 
-        def test_a_lead_that_comes_back_from_the_dead_is_fenced_and_lights_nothing(self):
+        def test_a_lead_that_comes_back_from_the_dead_is_fenced_and_stands_back(self):
             self.make_show(("right",))
             lead, second, _ = self.understudy(make=False)
             lead.until("roll call", ready=True)
@@ -88,6 +88,7 @@ def make_cases(Stage, footlight, program, full):
             lead.say("go")  # its operator does not know
             lead.process.send_signal(signal.SIGCONT)
             second.say("go")
+            self.assertEqual(lead.process.wait(30), 3)
             second.until("the end of cue 1", phase="stands", standby="2")
             time.sleep(0.3)
             second.say("go")
