@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/state_folder.hpp"
 
-#include <cstdlib>
+#include "app/environment.hpp"
 
 namespace footlight::app {
-namespace {
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
-  return value == nullptr ? "" : value;
-}
-
-}  // namespace
 
 std::filesystem::path state_folder(const std::string& chosen) {
   if (!chosen.empty()) return chosen;

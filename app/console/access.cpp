@@ -11,13 +11,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <nettle/memops.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/check.hpp"
 #include "core/file_descriptor.hpp"
+#include "core/secret.hpp"
 
 namespace footlight::app {
 namespace {
@@ -76,10 +76,6 @@ std::optional<Role> paired_role_from(std::string_view text) {
   if (text == "view") return Role::view;
   if (text == "operate") return Role::operate;
   return std::nullopt;
-}
-
-bool same_secret(std::string_view one, std::string_view other) {
-  return one.size() == other.size() && nettle_memeql_sec(one.data(), other.data(), one.size()) != 0;
 }
 
 std::string random_hex(std::size_t bytes) {

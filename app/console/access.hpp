@@ -20,9 +20,6 @@ enum class Role : std::uint8_t { view, operate, admin };
 /// "view" and "operate": what a code can be for.
 [[nodiscard]] std::optional<Role> paired_role_from(std::string_view text);
 
-/// Takes the same time wherever two secrets of one length differ.
-[[nodiscard]] bool same_secret(std::string_view one, std::string_view other);
-
 /// So many bytes from the system's generator, as hex digits.
 [[nodiscard]] std::string random_hex(std::size_t bytes);
 

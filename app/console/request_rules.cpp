@@ -6,6 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "core/secret.hpp"
+
 namespace footlight::app {
 namespace {
 

@@ -16,22 +16,6 @@ namespace {
 
 constexpr auto kTryAgain = std::chrono::seconds(1);
 
-std::string_view name_of(RunEvent::Kind kind) {
-  switch (kind) {
-    case RunEvent::Kind::answer:
-      return "answer";
-    case RunEvent::Kind::moment:
-      return "moment";
-    case RunEvent::Kind::reset:
-      return "reset";
-    case RunEvent::Kind::alarm:
-      return "alarm";
-    case RunEvent::Kind::note:
-      return "note";
-  }
-  return "";
-}
-
 /// Where the show is, without what a moving position changes by itself.
 std::string fixed_part(const ShowState& state) {
   const auto& where = state.where;
@@ -57,7 +41,7 @@ Journal::Journal(std::filesystem::path file, JournalRun run, const Rig& rig, con
 
 void Journal::told(const RunEvent& event) {
   JournalEntry entry;
-  entry.kind = name_of(event.kind);
+  entry.kind = to_text(event.kind);
   entry.text = event.text;
   if (event.kind == RunEvent::Kind::answer) {
     entry.who = event.who.name;

@@ -19,22 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostUnanswered = 1024;  // the cue thread's ring is smaller: answers beyond are lost
 
-std::string_view name_of(RunEvent::Kind kind) {
-  switch (kind) {
-    case RunEvent::Kind::answer:
-      return "answer";
-    case RunEvent::Kind::moment:
-      return "moment";
-    case RunEvent::Kind::reset:
-      return "reset";
-    case RunEvent::Kind::alarm:
-      return "alarm";
-    case RunEvent::Kind::note:
-      return "note";
-  }
-  return "";
-}
-
 /// Without spaces at its ends.
 std::string_view trimmed(std::string_view line) {
   const auto space = [](unsigned char c) { return std::isspace(c) != 0; };
@@ -62,9 +46,25 @@ bool names_bars(controller::Outcome outcome) {
 
 }  // namespace
 
+std::string_view to_text(RunEvent::Kind kind) {
+  switch (kind) {
+    case RunEvent::Kind::answer:
+      return "answer";
+    case RunEvent::Kind::moment:
+      return "moment";
+    case RunEvent::Kind::reset:
+      return "reset";
+    case RunEvent::Kind::alarm:
+      return "alarm";
+    case RunEvent::Kind::note:
+      return "note";
+  }
+  return "";
+}
+
 std::string json_of(const RunEvent& event) {
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // whatever somebody typed
-  Json document{{name_of(event.kind), event.text}};
+  Json document{{to_text(event.kind), event.text}};
   if (event.kind == RunEvent::Kind::answer) {
     document["answer"] = {
         {"order", event.order}, {"who", event.who.name}, {"refused", event.refused}, {"text", event.text}};

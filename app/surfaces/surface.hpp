@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "app/live/live_run.hpp"
 #include "controller/go_guard.hpp"
@@ -36,6 +37,8 @@ struct RunEvent {
   bool refused = false;
 };
 
+/// "answer", "moment" ...: as in JSON and in the journal.
+[[nodiscard]] std::string_view to_text(RunEvent::Kind kind);
 /// One line of JSON: {"answer": {"order", "who", "refused", "text"}}, {"moment": text}, {"alarm": text} ...
 [[nodiscard]] std::string json_of(const RunEvent& event);
 

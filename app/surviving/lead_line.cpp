@@ -124,13 +124,4 @@ std::optional<Place> place_in(std::string_view line, Duration now) {
   return place;
 }
 
-bool is_the_token(std::string_view a, std::string_view b) {
-  // The length is no secret.
-  unsigned different = a.size() == b.size() ? 0 : 1;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    different |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b.empty() ? 0 : b[i % b.size()]);
-  }
-  return different == 0;
-}
-
 }  // namespace footlight::app

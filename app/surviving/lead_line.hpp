@@ -48,7 +48,4 @@ struct FollowRequest {
 [[nodiscard]] std::string take_over_line(std::uint32_t epoch);
 [[nodiscard]] std::optional<std::uint32_t> take_over_in(std::string_view line);
 
-/// Without telling by its time how far two texts are equal.
-[[nodiscard]] bool is_the_token(std::string_view a, std::string_view b);
-
 }  // namespace footlight::app

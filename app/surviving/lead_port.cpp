@@ -21,6 +21,7 @@
 
 #include "app/surfaces/run_desk.hpp"
 #include "core/machine_time.hpp"
+#include "core/secret.hpp"
 
 namespace footlight::app {
 namespace {
@@ -145,7 +146,7 @@ bool LeadPort::take_line(Client& client, std::string_view line, RunDesk& desk) {
   }
   const auto request = follow_request(line);
   if (!request || client.follows) return false;
-  if (!settings_.token.empty() && !is_the_token(settings_.token, request->token)) {
+  if (!settings_.token.empty() && !same_secret(settings_.token, request->token)) {
     (void)say(client.socket, refused_line("another token is wanted"));
     desk.tell({RunEvent::Kind::alarm, "an understudy without the right token was refused"});
     return false;

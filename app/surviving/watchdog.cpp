@@ -3,21 +3,14 @@
 
 #include <charconv>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "app/environment.hpp"
+
 namespace footlight::app {
-namespace {
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
-  return value == nullptr ? "" : value;
-}
-
-}  // namespace
 
 Notifier::Notifier() : address_(environment("NOTIFY_SOCKET")) {
   const bool path = address_.starts_with('/') || address_.starts_with('@');

@@ -72,14 +72,6 @@ TEST_F(ConsoleToken, IsNoLinkAndNoFolder) {
   EXPECT_EQ(message(), refusal("is no file"));
 }
 
-TEST(ConsoleSecrets, AreTheSameOrNot) {
-  EXPECT_TRUE(same_secret("abc", "abc"));
-  EXPECT_TRUE(same_secret("", ""));
-  EXPECT_FALSE(same_secret("abc", "abd"));
-  EXPECT_FALSE(same_secret("abc", "ab"));
-  EXPECT_FALSE(same_secret("", "a"));
-}
-
 TEST(ConsolePairing, GivesATokenOfTheCodesRoleOnce) {
   Pairing pairing;
   const std::string code = pairing.make(Role::operate, kStart);

@@ -84,14 +84,6 @@ TEST(LeadLine, WhatIsNoLineIsNoneAndNothingElseHappens) {
   EXPECT_FALSE(leads_in(std::string(100'000, '[')));
 }
 
-TEST(LeadLine, ASecretIsEqualToItselfAlone) {
-  EXPECT_TRUE(is_the_token("abc", "abc"));
-  EXPECT_FALSE(is_the_token("abc", "abd"));
-  EXPECT_FALSE(is_the_token("abc", "ab"));
-  EXPECT_FALSE(is_the_token("", "a"));
-  EXPECT_FALSE(is_the_token("a", ""));
-}
-
 // ---- when to take over
 
 TEST(FollowedLead, TakesOverAfterASecondOfSilence) {
