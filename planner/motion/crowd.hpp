@@ -12,6 +12,8 @@
 
 namespace footlight::planner {
 
+struct PaintedScene;  // planner/painted/scene.hpp
+
 /// Group of who is in none.
 inline constexpr std::uint32_t kNoGroup = std::numeric_limits<std::uint32_t>::max();
 
@@ -20,13 +22,14 @@ inline constexpr std::uint32_t kNoGroup = std::numeric_limits<std::uint32_t>::ma
 struct MotionTask {
   std::vector<Point> from;  ///< where each person stands at 0 s
   std::vector<Point> to;    ///< places at the end, in any order, as many as people; empty: wherever the model ends
-  std::vector<std::uint32_t> group;     ///< of each person, as Show::groups, or kNoGroup
-  std::vector<std::uint32_t> to_group;  ///< of each place: only who is in this group may end there; empty: anybody
-  std::vector<double> radius_m;         ///< half of the room of each person, > 0
-  std::vector<double> speed_mps;        ///< fastest walk of each person, > 0
-  std::vector<double> at_s;             ///< instants that are wanted, ascending, the first 0
-  std::vector<GroupPath> paths;         ///< of the section
-  const MotionFloor* floor = nullptr;   ///< what is in the way
+  std::vector<std::uint32_t> group;        ///< of each person, as Show::groups, or kNoGroup
+  std::vector<std::uint32_t> to_group;     ///< of each place: only who is in this group may end there; empty: anybody
+  std::vector<double> radius_m;            ///< half of the room of each person, > 0
+  std::vector<double> speed_mps;           ///< fastest walk of each person, > 0
+  std::vector<double> at_s;                ///< instants that are wanted, ascending, the first 0
+  std::vector<GroupPath> paths;            ///< of the section
+  const MotionFloor* floor = nullptr;      ///< what is in the way
+  const PaintedScene* painting = nullptr;  ///< of a painted section; people begin on its begin cells
   std::uint64_t seed = 1;
 
   [[nodiscard]] std::size_t people() const { return from.size(); }

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/painted/painted_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/planner/painted/painted_show.hpp"
+
+namespace footlight::planner {
+namespace {
+
+using test::kGrey;
+using test::PaintedShow;
+
+/// A painted show that is ready to be moved.
+struct Moved {
+  explicit Moved(PaintedShow painted, double duration_s = 40, std::vector<MovingObstacle> discs = {})
+      : one(std::move(painted)) {
+    auto read = one.read();
+    EXPECT_TRUE(read) << read.error().message;
+    scene = std::make_unique<PaintedScene>(std::move(*read));
+    floor = std::make_unique<MotionFloor>(*scene->ways, std::move(discs), one.show.tempo, Instant{});
+    for (const CellIndex cell : scene->begin_cells()) task.from.push_back(one.show.stage.grid.centre(cell));
+    for (const CellIndex cell : scene->end_cells()) task.to.push_back(one.show.stage.grid.centre(cell));
+    const std::size_t people = task.from.size();
+    task.group.assign(people, kNoGroup);
+    task.radius_m.assign(people, one.show.stage.clearance_m / 2);
+    task.speed_mps.assign(people, 1.4);
+    for (double t = 0; t <= duration_s; t += 0.5) task.at_s.push_back(t);
+    task.floor = floor.get();
+    task.painting = scene.get();
+  }
+  [[nodiscard]] std::vector<std::vector<Point>> run() const {
+    const PaintedModel model(task, one.options, *scene);
+    return *simulate(model, task.at_s, {});
+  }
+
+  PaintedShow one;
+  std::unique_ptr<PaintedScene> scene;
+  std::unique_ptr<MotionFloor> floor;
+  MotionTask task;
+};
+
+double farthest_from_goal(const Moved& moved, const std::vector<std::vector<Point>>& way) {
+  double most = 0;
+  for (std::size_t i = 0; i < way.back().size(); ++i) most = std::max(most, distance(way.back()[i], moved.task.to[i]));
+  return most;
+}
+
+TEST(PaintedModel, EverybodyComesToHerPlaceInTime) {
+  const Moved moved((PaintedShow()));
+  const auto way = moved.run();
+  EXPECT_LT(farthest_from_goal(moved, way), 0.6);
+}
+
+TEST(PaintedModel, NobodyIsFasterThanSheCanWalk) {
+  const Moved moved((PaintedShow()));
+  const auto way = moved.run();
+  for (std::size_t t = 1; t < way.size(); ++t) {
+    for (std::size_t i = 0; i < way[t].size(); ++i) EXPECT_LE(distance(way[t][i], way[t - 1][i]), 0.7 + 1e-9);
+  }
+}
+
+TEST(PaintedModel, PeopleFollowTheStrokeWhereItBends) {
+  PaintedShow one;
+  one.painter.box(24, 30, 97, 50, {255, 255, 255});
+  one.painter.stroke({{24, 40}, {40, 10}, {80, 10}, {96, 40}}, 4, {255, 150, 150}, {110, 20, 20});
+  const Moved moved(one, 60);
+  const auto way = moved.run();
+  double upstage = 0;
+  for (const auto& at : way) {
+    double mean = 0;
+    for (const Point p : at) mean += p.y / 40;
+    upstage = std::max(upstage, mean);
+  }
+  EXPECT_GT(upstage, 14.5);  // the stroke's straight part is at 17.5 m, both shapes are at 10 m
+  EXPECT_LT(farthest_from_goal(moved, way), 0.6);
+
+  one.options.stroke_force = 0;
+  one.options.flow_force = 0;
+  const Moved straight(one, 60);
+  double straight_upstage = 0;
+  for (const auto& at : straight.run()) {
+    double mean = 0;
+    for (const Point p : at) mean += p.y / 40;
+    straight_upstage = std::max(straight_upstage, mean);
+  }
+  EXPECT_LT(straight_upstage, 11);
+}
+
+TEST(PaintedModel, NobodyEntersTheBackgroundEvenBetweenTwoSteps) {
+  PaintedShow one;
+  one.painter.box(54, 0, 66, 34, kGrey);
+  one.painter.box(54, 48, 66, 80, kGrey);
+  const Moved moved(one, 80);
+  const auto way = moved.run();
+  EXPECT_LT(farthest_from_goal(moved, way), 0.6);
+  const double keep = moved.scene->ways->keep_m();
+  const PaintedModel model(moved.task, moved.one.options, *moved.scene);
+  auto now = model.begin();
+  for (int t = 0; t < 800; ++t) {
+    auto next = now;
+    ++next.tick;
+    model.step(now, next);
+    for (std::size_t i = 0; i < now.position.size(); ++i) {
+      for (int k = 1; k <= 4; ++k) {
+        const auto near = moved.floor->nearest(now.position[i] + k / 4.0 * (next.position[i] - now.position[i]), keep);
+        ASSERT_FALSE(near && near->distance_m < keep - 1e-4) << i << " at step " << t;
+      }
+    }
+    now = next;
+  }
+}
+
+TEST(PaintedModel, PeopleKeepApartOnTheWayBetterThanWithoutParticles) {
+  const auto pressed = [](double people_force) {
+    PaintedShow one;
+    one.painter.box(54, 0, 66, 33, kGrey);
+    one.painter.box(54, 47, 66, 80, kGrey);
+    one.options.people_force = people_force;
+    const Moved moved(one, 60);
+    double near = 0;
+    for (const auto& at : moved.run()) {
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) near += distance(at[i], at[k]) < 0.5 ? 1 : 0;
+      }
+    }
+    return near;
+  };
+  const double with = pressed(1);
+  const double without = pressed(0);
+  EXPECT_LT(with, 0.6 * without);
+}
+
+TEST(PaintedModel, IsTheSameForAnyNumberOfThreads) {
+  PaintedShow one;
+  one.show = test::show_with(160, GridKind::square, 30, 20);
+  one.show.sections = PaintedShow().show.sections;
+  one.painter.box(0, 0, 120, 80, {255, 255, 255});
+  one.painter.box(0, 4, 40, 76, one.options.paint[0].colour);
+  one.painter.box(80, 4, 120, 76, one.options.paint[1].colour);
+  one.painter.stroke({{40, 40}, {80, 40}}, 6, {255, 150, 150}, {110, 20, 20});
+  const Moved moved(one, 10);
+  std::vector<std::vector<std::vector<Point>>> ways;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    ways.push_back(moved.run());
+  }
+  EXPECT_EQ(ways[0], ways[1]);
+  EXPECT_EQ(ways[0], ways[2]);
+}
+
+TEST(PaintedModel, TheOrderOfPeopleHasNoInfluence) {
+  Moved moved((PaintedShow()), 20);
+  const auto way = moved.run();
+  std::reverse(moved.task.from.begin(), moved.task.from.end());
+  const auto turned = moved.run();
+  for (std::size_t i = 0; i < 40; ++i) {
+    EXPECT_NEAR(distance(way.back()[i], turned.back()[39 - i]), 0, 1e-6);
+  }
+}
+
+TEST(PaintedModel, PeopleStepAsideForSomethingThatMoves) {
+  MovingObstacle car;
+  car.radius_m = 1;
+  car.at = {{1, {0, 2}}, {60, {0, 18}}};
+  const Moved moved(PaintedShow(), 40, {car});
+  int within = 0;
+  std::size_t t = 0;
+  for (const auto& at : moved.run()) {
+    for (const auto& disc : moved.floor->discs(moved.task.at_s[t])) {
+      for (const Point p : at) within += distance(p, disc.centre) < disc.radius_m ? 1 : 0;
+    }
+    ++t;
+  }
+  EXPECT_EQ(within, 0);
+}
+
+}  // namespace
+}  // namespace footlight::planner
