@@ -66,16 +66,9 @@ class HandReader {
     const auto name = reader.written("group");
     if (!name || !reading_.has_stage || !reading_.has_performers) return std::nullopt;
     out.cells = read_cells(reader, "cells", show_.stage.grid);
-    const auto found = std::find_if(show_.groups.begin(), show_.groups.end(),
-                                    [&](const Group& group) { return group.name == name->text; });
-    if (found == show_.groups.end()) {
-      std::vector<std::string> names;
-      for (const Group& group : show_.groups) names.push_back(group.name);
-      reader.error(*name, "no group has the name " + in_quotes(name->text),
-                   names.empty() ? "the show has no groups" : suggestion(name->text, names, "groups"));
-      return std::nullopt;
-    }
-    out.group = GroupIndex::of(found - show_.groups.begin());
+    const auto group = find_group(reading_, reader, *name);
+    if (!group) return std::nullopt;
+    out.group = *group;
     return out;
   }
 
@@ -124,7 +117,7 @@ class HandReader {
     return Override::Pin{PerformerIndex::of(who - show_.performers.begin()), *cell, written.position};
   }
 
-  const ShowReading& reading_;
+  ShowReading& reading_;
   const Show& show_;
 };
 
@@ -178,6 +171,18 @@ void read_regions(const HandReader& hand, MappingReader& section, Section& out) 
 }
 
 }  // namespace
+
+std::optional<GroupIndex> find_group(ShowReading& show, MappingReader& mapping, const Written& name) {
+  const std::vector<Group>& groups = show.show().groups;
+  const auto found =
+      std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.name == name.text; });
+  if (found != groups.end()) return GroupIndex::of(found - groups.begin());
+  std::vector<std::string> names;
+  for (const Group& group : groups) names.push_back(group.name);
+  mapping.error(name, "no group has the name " + in_quotes(name.text),
+                names.empty() ? "the show has no groups" : suggestion(name.text, names, "groups"));
+  return std::nullopt;
+}
 
 void read_by_hand(ShowReading& show, MappingReader& section, Section& out) {
   const HandReader hand(show);

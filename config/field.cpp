@@ -10,7 +10,7 @@ namespace footlight::config {
 namespace {
 
 std::string_view single_name(Type type) {
-  constexpr std::array<std::string_view, 26> kNames{"whole number",
+  constexpr std::array<std::string_view, 29> kNames{"whole number",
                                                     "number",
                                                     "text",
                                                     "true or false",
@@ -35,7 +35,10 @@ std::string_view single_name(Type type) {
                                                     "cell -> cell",
                                                     "performer -> cell",
                                                     "cells or wearable",
-                                                    "current"};
+                                                    "current",
+                                                    "angle",
+                                                    "[x, y]",
+                                                    "list of [x, y]"};
   return kNames.at(static_cast<std::size_t>(type));
 }
 
@@ -48,7 +51,7 @@ const Field* Listing::find(std::string_view key) const {
 
 bool is_quantity(Type type) {
   return type == Type::length || type == Type::speed || type == Type::time || type == Type::area ||
-         type == Type::counts || type == Type::current;
+         type == Type::counts || type == Type::current || type == Type::angle;
 }
 
 Dimension dimension_of(Type type) {
@@ -63,6 +66,8 @@ Dimension dimension_of(Type type) {
       return Dimension::area;
     case Type::current:
       return Dimension::current;
+    case Type::angle:
+      return Dimension::angle;
     default:
       FL_CHECK(type == Type::counts);
       return Dimension::counts;

@@ -37,6 +37,9 @@ enum class Type {
   pin,          ///< "17 -> C4": performer, cell
   lamp,         ///< cells, or a mapping as Field::listing
   current,      ///< a quantity, as length
+  angle,        ///< a quantity, as length
+  point,        ///< a place on the floor: [x, y], two lengths
+  polygon,      ///< three points or more
 };
 
 struct Listing;

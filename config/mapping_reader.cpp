@@ -2,6 +2,7 @@
 #include "config/mapping_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include "config/nearest.hpp"
@@ -215,6 +216,75 @@ std::optional<double> MappingReader::quantity(std::string_view key) {
     return std::nullopt;
   }
   return in_range(*value_text, f, *parsed.value, instant ? "" : base_unit(dimension_of(f.type)));
+}
+
+std::optional<Point> MappingReader::point_of(const TextNode& node, const std::string& where, const Field& f) {
+  constexpr const char* kHint =
+      "write for example [-20 m, 10 m]: to stage left of the centre line, upstage of the edge";
+  if (node.kind != TextNode::Kind::sequence || node.items.size() != 2) {
+    const bool list = node.kind == TextNode::Kind::sequence;
+    error(reading_->at(node), where,
+          (list ? "a list of " + std::to_string(node.items.size()) : std::string(found(node))) +
+              " stands where a place [x, y] belongs",
+          kHint);
+    return std::nullopt;
+  }
+  std::array<double, 2> metres{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto value_text = scalar_of(*node.items[i], element(where, i), reading_->at(*node.items[i]));
+    if (!value_text) return std::nullopt;
+    const ParsedQuantity parsed = parse_quantity(value_text->text, Dimension::length);
+    if (!parsed.value) {
+      error(*value_text, parsed.text, parsed.hint);
+      return std::nullopt;
+    }
+    const auto value = in_range(*value_text, f, *parsed.value, base_unit(Dimension::length));
+    if (!value) return std::nullopt;
+    metres[i] = *value;
+  }
+  return Point{metres[0], metres[1]};
+}
+
+std::optional<Point> MappingReader::point(std::string_view key) {
+  const Field& f = field(key);
+  FL_CHECK(f.type == Type::point && !f.list);
+  const TextEntry* e = entry(key);
+  return e == nullptr ? std::nullopt : point_of(*e->value, path(key), f);
+}
+
+std::vector<Point> MappingReader::points_of(std::string_view key, const Field& f) {
+  const TextEntry* e = entry(key);
+  if (e == nullptr) return {};
+  std::vector<Point> out;
+  if (e->value->kind != TextNode::Kind::sequence) {
+    error(key, std::string(found(*e->value)) + " stands where a list of places belongs",
+          "write for example [[-20 m, 10 m], [20 m, 10 m]]");
+    return out;
+  }
+  if (f.required && f.list && e->value->items.empty()) error(key, "the list is empty", "at least one is needed");
+  for (std::size_t i = 0; i < e->value->items.size(); ++i) {
+    if (const auto one = point_of(*e->value->items[i], element(path(key), i), f)) out.push_back(*one);
+  }
+  return out;
+}
+
+std::vector<Point> MappingReader::points(std::string_view key) {
+  const Field& f = field(key);
+  FL_CHECK(f.type == Type::point && f.list);
+  return points_of(key, f);
+}
+
+std::vector<Point> MappingReader::polygon(std::string_view key) {
+  const Field& f = field(key);
+  FL_CHECK(f.type == Type::polygon);
+  std::vector<Point> out = points_of(key, f);
+  const TextEntry* e = entry(key);
+  const bool whole = e != nullptr && e->value->kind == TextNode::Kind::sequence && e->value->items.size() == out.size();
+  if (!whole) return {};
+  if (out.size() >= 3) return out;
+  error(key, "a polygon has three corners or more, and this has " + std::to_string(out.size()),
+        "write for example [[0 m, 2 m], [4 m, 2 m], [2 m, 5 m]]");
+  return {};
 }
 
 std::vector<MappingReader::Item> MappingReader::items_of(std::string_view key, bool scalars, bool mappings_too) {

@@ -10,6 +10,7 @@
 #include "config/field.hpp"
 #include "config/text_tree.hpp"
 #include "core/diagnostic.hpp"
+#include "core/grid.hpp"
 
 namespace footlight::config {
 
@@ -54,6 +55,12 @@ class MappingReader {
   [[nodiscard]] std::optional<int> choice(std::string_view key);
   /// In the base unit of the field's type; at_count: the count.
   [[nodiscard]] std::optional<double> quantity(std::string_view key);
+  /// A place on the floor, metres.
+  [[nodiscard]] std::optional<Point> point(std::string_view key);
+  /// A list of places; what is wrong with one of them is reported and leaves it out.
+  [[nodiscard]] std::vector<Point> points(std::string_view key);
+  /// At least three corners; empty after an error.
+  [[nodiscard]] std::vector<Point> polygon(std::string_view key);
   /// A scalar that the caller converts; the default counts as written.
   [[nodiscard]] std::optional<Written> written(std::string_view key);
   /// The scalars of a list; a single scalar is a list of one. Mappings in it are reported.
@@ -76,6 +83,8 @@ class MappingReader {
   [[nodiscard]] const Field& field(std::string_view key) const;
   [[nodiscard]] std::optional<Written> scalar_of(const TextNode& node, const std::string& path, const Position& key);
   [[nodiscard]] std::vector<Item> items_of(std::string_view key, bool scalars, bool mappings);
+  [[nodiscard]] std::optional<Point> point_of(const TextNode& node, const std::string& where, const Field& field);
+  [[nodiscard]] std::vector<Point> points_of(std::string_view key, const Field& field);
   [[nodiscard]] std::optional<double> in_range(const Written& written, const Field& field, double value,
                                                std::string_view unit);
   void check_keys();

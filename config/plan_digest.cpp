@@ -46,6 +46,13 @@ void add(Sha256& sum, const PlanSection& section) {
   if (section.film) add(sum, *section.film);
   add(sum, section.reserve);
   add_list(sum, section.notes, [&](const std::string& note) { sum.text(note); });
+  add_list(sum, section.obstacles, [&](const PlanObstacle& obstacle) {
+    sum.real(obstacle.radius_m);
+    add_list(sum, obstacle.at, [&](const PlanObstacle::At& at) {
+      add(sum, at.time);
+      sum.real(at.centre.x).real(at.centre.y);
+    });
+  });
 }
 
 void add(Sha256& sum, const Formation& formation) {
@@ -69,7 +76,7 @@ void add(Sha256& sum, const TransitionFacts& facts) {
 
 std::string digest_of(const Plan& plan) {
   Sha256 sum;
-  sum.text("footlight plan 2").text(plan.title).text(plan.show_hash);
+  sum.text("footlight plan 3").text(plan.title).text(plan.show_hash);
   // Plans from before there were versions keep their digest.
   if (!plan.version.empty()) sum.text("version").text(plan.version);
   add(sum, plan.stage);

@@ -67,12 +67,20 @@ void write_sections(Database& database, const Plan& plan) {
   Statement row = database.prepare("INSERT INTO sections VALUES(?, ?, ?, ?, ?, ?)");
   Statement film = database.prepare("INSERT INTO films VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   Statement note = database.prepare("INSERT INTO notes VALUES(?, ?, ?)");
+  Statement obstacle = database.prepare("INSERT INTO obstacles VALUES(?, ?, ?, ?, ?, ?, ?)");
+  std::int64_t places = 0;
   std::int64_t number = 0;
   std::int64_t notes = 0;
   for (const PlanSection& section : plan.sections) {
     row.bind(number).bind(std::string_view(section.name)).bind(ns(section.start)).bind(ns(section.end));
     row.bind(section.max_speed_mps).bind_blob(encode_cells(section.reserve)).run();
     if (section.film) write_film(film, number, *section.film);
+    for (std::size_t o = 0; o < section.obstacles.size(); ++o) {
+      for (const PlanObstacle::At& at : section.obstacles[o].at) {
+        obstacle.bind(places++).bind(number).bind(static_cast<std::int64_t>(o)).bind(section.obstacles[o].radius_m);
+        obstacle.bind(ns(at.time)).bind(at.centre.x).bind(at.centre.y).run();
+      }
+    }
     for (const std::string& text : section.notes) note.bind(notes++).bind(number).bind(std::string_view(text)).run();
     ++number;
   }

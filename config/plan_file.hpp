@@ -10,7 +10,7 @@
 
 namespace footlight::config {
 
-/// Writes an SQLite file (application_id 0x464C5054 "FLPT", user_version 3) under a temporary name and renames it; a
+/// Writes an SQLite file (application_id 0x464C5054 "FLPT", user_version 4) under a temporary name and renames it; a
 /// failure or an interruption leaves an older file as it was. A hash over the whole content is kept inside.
 [[nodiscard]] Status<> save_plan(const Plan& plan, const std::filesystem::path& file);
 

@@ -103,8 +103,8 @@ class PlanReader {
 
   Result<Plan> read() {
     // The grid comes first: everything else is checked against it.
-    const bool whole = schema() && meta() && stage() && performers() && tracks() && sections() && films() && notes() &&
-                       formations() && transitions();
+    const bool whole = schema() && meta() && stage() && performers() && tracks() && sections() && films() &&
+                       obstacles() && notes() && formations() && transitions();
     if (!whole) return input_error(problem_);
     if (digest_of(plan_) != digest_) return input_error("its content does not match its digest");
     return std::move(plan_);
@@ -231,6 +231,29 @@ class PlanReader {
       film.inverted = rows.number(0, 1) == 1;
       for (double& number : film.stage_to_frame) number = rows.real();
       if (rows.problem().empty()) plan_.sections[static_cast<std::size_t>(section)].film = std::move(film);
+    }
+    return done(rows);
+  }
+
+  bool obstacles() {
+    Rows rows(database_, "SELECT number, section, obstacle, radius_m, time_ns, x_m, y_m FROM obstacles ORDER BY number",
+              "obstacles");
+    while (rows.next()) {
+      const std::int64_t section = rows.integer(0, last_section());
+      const int number = rows.number();
+      const double radius_m = rows.real();
+      const Instant time = rows.instant();
+      const double x_m = rows.real();
+      const double y_m = rows.real();
+      if (!rows.problem().empty()) break;
+      auto& list = plan_.sections[static_cast<std::size_t>(section)].obstacles;
+      const auto size = static_cast<int>(list.size());
+      if (number != size && number + 1 != size) rows.wrong("its obstacles are not in order");
+      if (number == size) list.push_back({radius_m, {}});
+      auto& places = list.back().at;
+      if (!places.empty() && time <= places.back().time)
+        rows.wrong("the places of an obstacle are not in order of time");
+      places.push_back({time, {x_m, y_m}});
     }
     return done(rows);
   }

@@ -11,7 +11,7 @@
 namespace footlight::config {
 
 inline constexpr std::int64_t kPlanApplicationId = 0x464C5054;  ///< "FLPT"
-inline constexpr std::int64_t kPlanVersion = 3;
+inline constexpr std::int64_t kPlanVersion = 4;
 
 /// The tables of a plan file; docs/plan-file.md says what stands in them. A file with any other schema is no plan.
 inline constexpr std::array kPlanSchema{
@@ -29,6 +29,8 @@ inline constexpr std::array kPlanSchema{
     "last_frame INTEGER NOT NULL, show_fps REAL NOT NULL, width INTEGER NOT NULL, height INTEGER NOT NULL, "
     "threshold INTEGER NOT NULL, inverted INTEGER NOT NULL, a REAL NOT NULL, b REAL NOT NULL, c REAL NOT NULL, "
     "d REAL NOT NULL, e REAL NOT NULL, f REAL NOT NULL) STRICT",
+    "CREATE TABLE obstacles(number INTEGER PRIMARY KEY, section INTEGER NOT NULL, obstacle INTEGER NOT NULL, "
+    "radius_m REAL NOT NULL, time_ns INTEGER NOT NULL, x_m REAL NOT NULL, y_m REAL NOT NULL) STRICT",
     "CREATE TABLE notes(number INTEGER PRIMARY KEY, section INTEGER NOT NULL, text TEXT NOT NULL) STRICT",
     "CREATE TABLE formations(number INTEGER PRIMARY KEY, id TEXT NOT NULL, section INTEGER NOT NULL, "
     "count REAL NOT NULL, time_ns INTEGER NOT NULL, frame INTEGER, cells BLOB NOT NULL, in_picture INTEGER NOT NULL, "

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <span>
 
 namespace footlight::config {
@@ -21,6 +22,7 @@ constexpr std::array kTimes{Unit{"s", 1}, Unit{"ms", 0.001}, Unit{"min", 60}};
 constexpr std::array kAreas{Unit{"m2", 1}, Unit{"m²", 1}, Unit{"ft2", 0.3048 * 0.3048}};
 constexpr std::array kCounts{Unit{"counts", 1}, Unit{"count", 1}};
 constexpr std::array kCurrents{Unit{"A", 1}, Unit{"mA", 0.001}};
+constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -36,6 +38,8 @@ std::span<const Unit> units(Dimension dimension) {
       return kCounts;
     case Dimension::current:
       return kCurrents;
+    case Dimension::angle:
+      return kAngles;
   }
   return kLengths;
 }
@@ -54,12 +58,15 @@ std::string_view example(Dimension dimension) {
       return "8 counts";
     case Dimension::current:
       return "20 mA";
+    case Dimension::angle:
+      return "30 deg";
   }
   return "";
 }
 
 std::string_view name_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 6> kNames{"length", "speed", "time", "area", "number of counts", "current"};
+  constexpr std::array<std::string_view, 7> kNames{"length",           "speed",   "time", "area",
+                                                   "number of counts", "current", "angle"};
   return kNames.at(static_cast<std::size_t>(dimension));
 }
 

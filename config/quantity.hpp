@@ -9,8 +9,8 @@
 namespace footlight::config {
 
 /// What a written value measures. Values are held in the first unit: metres, metres a second, seconds, square metres,
-/// counts, ampere.
-enum class Dimension { length, speed, time, area, counts, current };
+/// counts, ampere, radians.
+enum class Dimension { length, speed, time, area, counts, current, angle };
 
 /// An interval of values, in the base unit.
 struct Range {
@@ -40,7 +40,7 @@ struct ParsedQuantity {
 
 /// "m, cm, mm, ft, in"
 [[nodiscard]] std::string units_of(Dimension dimension);
-/// The unit of the value in memory: "m", "m/s", "s", "m2", "counts", "A".
+/// The unit of the value in memory: "m", "m/s", "s", "m2", "counts", "A", "rad".
 [[nodiscard]] std::string_view base_unit(Dimension dimension);
 /// Regular expression of the written form, for JSON Schema.
 [[nodiscard]] std::string pattern_of(Dimension dimension);

@@ -44,6 +44,11 @@ Json quantity_of(const Field& field) {
   return {{"anyOf", Json::array({std::move(out), std::move(bare)})}};
 }
 
+/// [x, y]
+Json point_schema() {
+  return {{"type", "array"}, {"items", text_of(pattern_of(Dimension::length))}, {"minItems", 2}, {"maxItems", 2}};
+}
+
 /// A single value of the field's type.
 Json value_of(const Field& field) {
   switch (field.type) {
@@ -64,6 +69,7 @@ Json value_of(const Field& field) {
     case Type::area:
     case Type::counts:
     case Type::current:
+    case Type::angle:
       return quantity_of(field);
     case Type::at_count:
       return text_of(kCount);
@@ -90,6 +96,10 @@ Json value_of(const Field& field) {
       return text_of("^ *[A-Za-z]+[1-9][0-9]* *-> *[A-Za-z]+[1-9][0-9]* *$");
     case Type::pin:
       return text_of("^.+-> *[A-Za-z]+[1-9][0-9]* *$");
+    case Type::point:
+      return point_schema();
+    case Type::polygon:
+      return {{"type", "array"}, {"items", point_schema()}, {"minItems", 3}};
     case Type::mapping:
       return object_of(*field.listing);
     case Type::lamp:
@@ -119,7 +129,8 @@ Json property_of(const Field& field) {
     Json items = std::move(out);
     out = {{"type", "array"}, {"items", items}};
     // As the reader has it, a single value may stand for a list of one.
-    if (field.type != Type::mapping) out = {{"anyOf", Json::array({std::move(out), std::move(items)})}};
+    if (field.type != Type::mapping && field.type != Type::point)
+      out = {{"anyOf", Json::array({std::move(out), std::move(items)})}};
   }
   out["description"] = field.doc;
   if (!field.fallback.empty()) out["default"] = default_of(field);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys of a section: its pictures, how they are sampled, how it is planned.
+#include "config/motion_part.hpp"
 #include "config/show_fields.hpp"
 
 namespace footlight::config {
@@ -79,8 +80,8 @@ const Listing& region_listing() {
   return kListing;
 }
 
-const Listing& planner_listing() {
-  static const Listing kListing{
+Listing planner_keys() {
+  return {
       "sections[].planner",
       "How people are matched with the cells of the next formation.",
       {
@@ -109,6 +110,20 @@ const Listing& planner_listing() {
            .fallback = "1",
            .range = {0.01, 100}},
       }};
+}
+
+/// With a mapping for each model of motion.
+const Listing& planner_listing() {
+  static const Listing kListing = [] {
+    Listing out = planner_keys();
+    Field& model = out.fields.front();
+    for (const MotionModel& one : motion_models()) {
+      model.choices.push_back(one.name);
+      out.fields.push_back(
+          {.key = one.name, .type = Type::mapping, .doc = one.doc, .otherwise = "as below", .listing = &one.listing()});
+    }
+    return out;
+  }();
   return kListing;
 }
 
@@ -165,67 +180,75 @@ const Listing& region_of_group_listing() {
   return kListing;
 }
 
+Listing section_keys() {
+  return {"sections[]",
+          "A stretch of the show with one source of formations. Sections do not overlap.",
+          {
+              {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
+              {.key = "from",
+               .type = Type::mapping,
+               .doc = "The formations.",
+               .required = true,
+               .listing = &source_listing()},
+              {.key = "start",
+               .type = Type::at_count,
+               .doc = "Everybody stands in the first formation at this count.",
+               .required = true,
+               .range = {1, kMostCounts}},
+              {.key = "duration",
+               .type = Type::counts,
+               .doc = "The video is stretched over it.",
+               .otherwise = "the video's own length",
+               .range = {0, kMostCounts, true}},
+              {.key = "hold",
+               .type = Type::counts,
+               .doc = "Everybody stands still that long after the last formation.",
+               .fallback = "0 counts",
+               .range = {0, kMostCounts}},
+              {.key = "sampling",
+               .type = Type::mapping,
+               .doc = "Which frames of a video become formations.",
+               .otherwise = "as below",
+               .listing = &sampling_listing()},
+              {.key = "planner",
+               .type = Type::mapping,
+               .doc = "How people are matched with cells.",
+               .otherwise = "as below",
+               .listing = &planner_listing()},
+              {.key = "max_speed",
+               .type = Type::speed,
+               .doc = "Nobody walks faster in this section, nor into it.",
+               .otherwise = "`stage.max_speed`",
+               .range = {0, 20, true}},
+              {.key = "keys",
+               .type = Type::instant,
+               .doc = "Counts, or times of the video's file, whose frames are the director's "
+                      "key formations: exact, whatever is sampled between.",
+               .otherwise = "the sampled formations",
+               .list = true},
+              {.key = "overrides",
+               .type = Type::mapping,
+               .doc = "Formations changed by hand.",
+               .otherwise = "none",
+               .listing = &override_listing(),
+               .list = true},
+              {.key = "regions",
+               .type = Type::mapping,
+               .doc = "Groups bound to parts of the floor.",
+               .otherwise = "none",
+               .listing = &region_of_group_listing(),
+               .list = true},
+          }};
+}
+
 }  // namespace
 
 const Listing& section_listing() {
-  static const Listing kListing{"sections[]",
-                                "A stretch of the show with one source of formations. Sections do not overlap.",
-                                {
-                                    {.key = "name", .type = Type::text, .doc = "Unique.", .required = true},
-                                    {.key = "from",
-                                     .type = Type::mapping,
-                                     .doc = "The formations.",
-                                     .required = true,
-                                     .listing = &source_listing()},
-                                    {.key = "start",
-                                     .type = Type::at_count,
-                                     .doc = "Everybody stands in the first formation at this count.",
-                                     .required = true,
-                                     .range = {1, kMostCounts}},
-                                    {.key = "duration",
-                                     .type = Type::counts,
-                                     .doc = "The video is stretched over it.",
-                                     .otherwise = "the video's own length",
-                                     .range = {0, kMostCounts, true}},
-                                    {.key = "hold",
-                                     .type = Type::counts,
-                                     .doc = "Everybody stands still that long after the last formation.",
-                                     .fallback = "0 counts",
-                                     .range = {0, kMostCounts}},
-                                    {.key = "sampling",
-                                     .type = Type::mapping,
-                                     .doc = "Which frames of a video become formations.",
-                                     .otherwise = "as below",
-                                     .listing = &sampling_listing()},
-                                    {.key = "planner",
-                                     .type = Type::mapping,
-                                     .doc = "How people are matched with cells.",
-                                     .otherwise = "as below",
-                                     .listing = &planner_listing()},
-                                    {.key = "max_speed",
-                                     .type = Type::speed,
-                                     .doc = "Nobody walks faster in this section, nor into it.",
-                                     .otherwise = "`stage.max_speed`",
-                                     .range = {0, 20, true}},
-                                    {.key = "keys",
-                                     .type = Type::instant,
-                                     .doc = "Counts, or times of the video's file, whose frames are the director's "
-                                            "key formations: exact, whatever is sampled between.",
-                                     .otherwise = "the sampled formations",
-                                     .list = true},
-                                    {.key = "overrides",
-                                     .type = Type::mapping,
-                                     .doc = "Formations changed by hand.",
-                                     .otherwise = "none",
-                                     .listing = &override_listing(),
-                                     .list = true},
-                                    {.key = "regions",
-                                     .type = Type::mapping,
-                                     .doc = "Groups bound to parts of the floor.",
-                                     .otherwise = "none",
-                                     .listing = &region_of_group_listing(),
-                                     .list = true},
-                                }};
+  static const Listing kListing = [] {
+    Listing out = section_keys();
+    for (Field& field : motion_fields()) out.fields.push_back(std::move(field));
+    return out;
+  }();
   return kListing;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 
+#include "config/motion_part.hpp"
 #include "config/nearest.hpp"
 #include "config/show_parts.hpp"
 
@@ -75,11 +75,12 @@ Sampling read_sampling(MappingReader sampling) {
   return out;
 }
 
-PlannerOptions read_planner(MappingReader planner) {
+PlannerOptions read_planner(MappingReader& planner) {
   PlannerOptions out;
   if (const auto model = planner.choice("model")) {
-    constexpr std::array kModels{PlannerModel::joint, PlannerModel::hierarchical, PlannerModel::flat};
-    out.model = kModels.at(static_cast<std::size_t>(*model));
+    std::vector models{PlannerModel::joint, PlannerModel::hierarchical, PlannerModel::flat};
+    for (const MotionModel& one : motion_models()) models.push_back(one.model);
+    out.model = models.at(static_cast<std::size_t>(*model));
   }
   out.layers = planner.integer("layers").value_or(out.layers);
   out.cost = planner.choice("cost").value_or(0) == 0 ? PairingCost::squared : PairingCost::euclidean;
@@ -101,13 +102,16 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
   const auto hold = reader.quantity("hold");
   if (auto from = reader.mapping("from")) out.from = read_source(show, std::move(*from));
   if (auto sampling = reader.mapping("sampling")) out.sampling = read_sampling(std::move(*sampling));
-  if (auto planner = reader.mapping("planner")) out.planner = read_planner(std::move(*planner));
+  if (auto planner = reader.mapping("planner")) {
+    out.planner = read_planner(*planner);
+    read_motion(show, reader, *planner, out);
+  }
   out.max_speed_mps = reader.quantity("max_speed");
-  if (!std::holds_alternative<VideoSource>(out.from)) {
+  if (out.motion == nullptr && !std::holds_alternative<VideoSource>(out.from)) {
     refuse_keys(reader, {"duration", "sampling"}, "it goes with a video; a single formation has a hold");
     refuse_keys(reader, {"keys"}, "only a video has key formations");
   }
-  if (std::holds_alternative<CellsSource>(out.from)) {
+  if (out.motion == nullptr && std::holds_alternative<CellsSource>(out.from)) {
     refuse_keys(reader, {"overrides", "regions"}, "write it into the CSV file");
   }
   if (!name || !start || !hold) return std::nullopt;
@@ -115,7 +119,7 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
   out.start_count = *start;
   out.duration_counts = duration.value_or(0);
   out.hold_counts = *hold;
-  read_by_hand(show, reader, out);
+  if (out.motion == nullptr) read_by_hand(show, reader, out);
   return out;
 }
 

@@ -47,6 +47,8 @@ void read_looks(ShowReading& show, MappingReader looks);
 
 /// Cells of a list of names and ranges, ascending and each once; what lies off the grid is reported.
 [[nodiscard]] std::vector<CellIndex> read_cells(MappingReader& mapping, std::string_view key, const Grid& grid);
+/// The group of that name; nothing after an error. Asked when the show's groups are known.
+[[nodiscard]] std::optional<GroupIndex> find_group(ShowReading& show, MappingReader& mapping, const Written& name);
 /// One name or range; nothing after an error.
 [[nodiscard]] std::optional<CellRange> read_cell_range(MappingReader& mapping, const Written& written,
                                                        const Grid& grid);

@@ -39,8 +39,9 @@ struct Motion {
   MotionOptions options;
   std::vector<GroupPath> paths;
   std::vector<MovingObstacle> obstacles;  ///< beside the stage's blocked cells
-  double mark_counts =
-      1;  ///< people have a mark every so many counts, (0, 64]; more often where they cannot be followed
+  /// People have a mark every so many counts, (0, 64], more often where a way is not straight between; nothing: as
+  /// often as people can walk from cell to cell in every direction.
+  std::optional<double> mark_counts;
   std::uint64_t seed = 1;
 };
 

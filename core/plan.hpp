@@ -56,14 +56,29 @@ struct FilmPlacement {
   friend bool operator==(const FilmPlacement&, const FilmPlacement&) = default;
 };
 
+/// Something round that moves through a section: nobody comes nearer to its edge than to a blocked cell's.
+struct PlanObstacle {
+  struct At {
+    Instant time;
+    Point centre;
+
+    friend bool operator==(const At&, const At&) = default;
+  };
+  double radius_m = 0;
+  std::vector<At> at;  ///< strictly ascending; straight and even between, at rest before and after
+
+  friend bool operator==(const PlanObstacle&, const PlanObstacle&) = default;
+};
+
 struct PlanSection {
   std::string name;
   Instant start;
   Instant end;
   double max_speed_mps = 0;
-  std::optional<FilmPlacement> film;  ///< video or image
-  std::vector<CellIndex> reserve;     ///< ascending; who stands here is not in the picture
-  std::vector<std::string> notes;     ///< what people should know: scaled by how much, thinned, given way
+  std::optional<FilmPlacement> film;      ///< video or image
+  std::vector<CellIndex> reserve;         ///< ascending; who stands here is not in the picture
+  std::vector<std::string> notes;         ///< what people should know: scaled by how much, thinned, given way
+  std::vector<PlanObstacle> obstacles{};  ///< there from start to end
 
   friend bool operator==(const PlanSection&, const PlanSection&) = default;
 };

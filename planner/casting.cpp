@@ -8,10 +8,17 @@
 
 #include <fmt/format.h>
 
+#include "core/motion.hpp"
 #include "planner/formation/cell_distance.hpp"
 
 namespace footlight::planner {
 namespace {
+
+/// What says whose a section's places are.
+std::string source_text(const Section& section) {
+  const auto* list = std::get_if<CellsSource>(&section.from);
+  return list != nullptr ? "'" + list->path + "'" : "section '" + section.name + "'";
+}
 
 /// The binding of one station. Classes: performers by their number, then groups, then whoever is in none of these.
 class StationBinding {
@@ -24,12 +31,11 @@ class StationBinding {
         others_(people_ + static_cast<std::uint32_t>(show.groups.size())) {}
 
   Result<Binding> run() {
-    const auto* list = std::get_if<CellsSource>(&section_.from);
-    const bool groups = list != nullptr && !list->groups.empty();
+    const bool groups = !station_.groups.empty();
     if ((station_.pinned || groups) && !section_.regions.empty()) {
       return input_error(message_at(show_, section_.regions.front().position,
                                     fmt::format("sections[{}].regions", station_.section.value()),
-                                    fmt::format("'{}' says who stands where already", list->path),
+                                    source_text(section_) + " says who stands where already",
                                     "leave out the regions or its column of names or groups"));
     }
     if (!station_.pinned && !groups && section_.regions.empty() && station_.pins.empty()) return Binding();
@@ -40,7 +46,7 @@ class StationBinding {
     } else if (groups) {
       bind_groups([](GroupIndex) { return true; });
       for (std::size_t i = 0; i < station_.cells.size(); ++i) {
-        if (list->groups[i]) binding_.place[i] = class_of(*list->groups[i]);
+        if (station_.groups[i]) binding_.place[i] = class_of(*station_.groups[i]);
       }
     }
     if (auto error = pin_people()) return *error;
@@ -77,12 +83,11 @@ class StationBinding {
     if (place >= people_ && place < others_) whose = "the group '" + show_.groups[place - people_].name + "'";
     const Performer& one = show_.performers[performer.at()];
     const std::string group = one.group ? "in '" + show_.groups[one.group->at()].name + "'" : "in no group";
-    const std::string list = std::get<CellsSource>(section_.from).path;
     const auto [position, key] = pin_position(performer);
     return input_error(
         message_at(show_, position, key,
-                   fmt::format("'{}' gives {} to {}, and performer {} is {}", list, show_.stage.grid.name(cell), whose,
-                               one.id, place < people_ ? "not" : group),
+                   fmt::format("{} gives {} to {}, and performer {} is {}", source_text(section_),
+                               show_.stage.grid.name(cell), whose, one.id, place < people_ ? "not" : group),
                    "pin somebody whose place it is, or change the list"));
   }
 
@@ -221,6 +226,10 @@ std::vector<char> bound_groups(const Show& show) {
     for (const footlight::Region& region : section.regions) bound[region.group.at()] = 1;
     const auto* list = std::get_if<CellsSource>(&section.from);
     if (list != nullptr && !list->groups.empty()) bound.assign(bound.size(), 1);
+    if (section.motion == nullptr) continue;
+    for (const GroupPath& path : section.motion->paths) {
+      if (path.group) bound[path.group->at()] = 1;
+    }
   }
   return bound;
 }

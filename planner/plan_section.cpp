@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "planner/motion_section.hpp"
 #include "planner/picture_section.hpp"
 
 namespace footlight::planner {
@@ -25,6 +26,7 @@ Result<SectionPlan> cells_section(const Show& show, SectionIndex index, const Ce
   station.arrive = show.tempo.at(section.start_count);
   station.depart = show.tempo.at(section.end_count());
   station.cells = source.cells;
+  station.groups = source.groups;
   station.pinned = source.assigned;
   station.exact = true;
   for (const CellIndex cell : source.cells) {
@@ -62,15 +64,21 @@ std::string message_at(const Show& show, const Position& position, std::string k
   return to_text(diagnostic);
 }
 
+Result<SectionPlan> plan_source(const Show& show, SectionIndex index, const std::optional<Film>& film, const Ways& ways,
+                                const Station* before, const Progress& progress) {
+  const Section& section = show.sections[index.at()];
+  if (const auto* cells = std::get_if<CellsSource>(&section.from)) return cells_section(show, index, *cells);
+  if (!film || film->frames.empty()) {
+    return internal_error("the frames of section '" + section.name + "' are missing");
+  }
+  return plan_pictures(show, index, *film, ways, before, progress);
+}
+
 Result<SectionPlan> plan_section(const Show& show, SectionIndex index, const std::optional<Film>& film,
                                  const Ways& ways, const Station* before, const Progress& progress) {
   const Section& section = show.sections[index.at()];
-  const auto* cells = std::get_if<CellsSource>(&section.from);
-  if (cells == nullptr && (!film || film->frames.empty())) {
-    return internal_error("the frames of section '" + section.name + "' are missing");
-  }
-  auto plan = cells != nullptr ? cells_section(show, index, *cells)
-                               : plan_pictures(show, index, film.value(), ways, before, progress);
+  auto plan = section.motion != nullptr ? plan_motion(show, index, film, ways, before, progress)
+                                        : plan_source(show, index, film, ways, before, progress);
   if (!plan) return plan;
   plan->section.name = section.name;
   plan->section.start = show.tempo.at(section.start_count);

@@ -56,6 +56,11 @@ struct SectionPlan {
 [[nodiscard]] std::string message_at(const Show& show, const Position& position, std::string key_path, std::string text,
                                      std::string hint);
 
+/// The formations that a section's source gives, as drawn; of a section with a model of motion the one at its end.
+/// @return as `plan_section`
+[[nodiscard]] Result<SectionPlan> plan_source(const Show& show, SectionIndex section, const std::optional<Film>& film,
+                                              const Ways& ways, const Station* before, const Progress& progress);
+
 /// Turns a section's source into formations of exactly as many cells as there are performers.
 /// @param film of a video or an image, else absent
 /// @param before the last formation of the section before, if any

@@ -63,6 +63,12 @@ class Prover {
     for (const PlanSection& section : plan.sections) {
       limits.add(section.start.time_since_epoch().count()).add(section.end.time_since_epoch().count());
       limits.add(section.max_speed_mps);
+      for (const PlanObstacle& obstacle : section.obstacles) {
+        limits.add(obstacle.radius_m);
+        for (const PlanObstacle::At& at : obstacle.at) {
+          limits.add(at.time.time_since_epoch().count()).add(at.centre.x).add(at.centre.y);
+        }
+      }
     }
     limits_ = limits.key();
     alike_ = std::all_of(plan.radius_m.begin(), plan.radius_m.end(), [](double radius_m) { return radius_m == 0; }) &&

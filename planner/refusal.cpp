@@ -135,6 +135,9 @@ std::string other_text(const Show& show, const Plan& plan, const Violation& viol
     case Violation::Kind::too_close:
       hint = "a longer section, a larger pitch or a smaller clearance";
       break;
+    case Violation::Kind::into_obstacle:
+      hint = "more time, more room beside the obstacle's way, or an obstacle that is slower or smaller";
+      break;
     case Violation::Kind::into_blocked:
       hint = "more time, so that everybody can go around the blocked cells";
       break;

@@ -73,7 +73,7 @@ class StationCollector {
       if (!all_before) out_.stations.clear();
       std::optional<SectionPlan> section = known_section(index);
       out[s] = section.has_value();
-      if (!section && all_before && !has_film(show_.sections[s])) {
+      if (!section && all_before && !has_film(show_.sections[s]) && !moves(index)) {
         auto listed = plan_section(limits_, index, std::nullopt, ways_, before(), progress_);
         if (listed) section = std::move(*listed);
       }
@@ -86,6 +86,8 @@ class StationCollector {
   static bool has_film(const Section& section) {
     return std::holds_alternative<VideoSource>(section.from) || std::holds_alternative<ImageSource>(section.from);
   }
+  /// Sections with a model of motion are always planned anew; their walks are kept like all others.
+  [[nodiscard]] bool moves(SectionIndex index) const { return show_.sections[index.at()].motion != nullptr; }
   [[nodiscard]] const std::optional<Film>& film(SectionIndex index) const { return (*films_)[index.at()]; }
   [[nodiscard]] const Station* before() const { return out_.stations.empty() ? nullptr : &out_.stations.back(); }
 
@@ -121,7 +123,8 @@ class StationCollector {
   }
 
   [[nodiscard]] bool has_id(SectionIndex index) const {
-    return reuse_.stages != nullptr && index.at() < reuse_.film_ids.size() && !reuse_.film_ids[index.at()].empty();
+    return reuse_.stages != nullptr && index.at() < reuse_.film_ids.size() && !reuse_.film_ids[index.at()].empty() &&
+           !moves(index);
   }
   [[nodiscard]] std::optional<SectionPlan> known_section(SectionIndex index) const {
     auto plan = known_from(index, nullptr);

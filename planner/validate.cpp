@@ -11,6 +11,7 @@
 
 #include "planner/judge/approach.hpp"
 #include "planner/judge/blocked.hpp"
+#include "planner/judge/moving.hpp"
 #include "planner/judge/walks.hpp"
 
 namespace footlight::planner {
@@ -58,7 +59,7 @@ struct Findings {
 
 class Judge {
  public:
-  explicit Judge(const Plan& plan) : plan_(plan), walks_(plan), blocked_(plan.stage) {
+  explicit Judge(const Plan& plan) : plan_(plan), walks_(plan), blocked_(plan.stage), moving_(plan) {
     const std::size_t people = plan.tracks.size();
     FL_CHECK(plan.performers.size() == people && plan.radius_m.size() == people && plan.max_speed_mps.size() == people);
   }
@@ -161,6 +162,7 @@ class Judge {
     for (std::size_t k = 1; k < track.size(); ++k) {
       walk_speed(person, track[k - 1], track[k], out);
       if (!blocked_.empty()) walk_blocked(person, track[k - 1], track[k], out);
+      walk_into_moving(person, track[k - 1], track[k], out);
     }
     if (track.size() == 1 && !blocked_.empty()) walk_blocked(person, track[0], track[0], out);
   }
@@ -210,6 +212,17 @@ class Judge {
       }
       start = end;
     } while (start < to.time);
+  }
+
+  void walk_into_moving(std::uint32_t person, const judge::Stand& from, const judge::Stand& to, Findings& out) const {
+    const double limit = std::max(plan_.stage.clearance_m / 2, plan_.radius_m[person]);
+    for (const judge::MovingObstacles::Hit& hit : moving_.nearer_than(from, to, limit - judge::kBlockedTolerance_m)) {
+      const PerformerIndex p(person);
+      out.add({Kind::into_obstacle, p, p, hit.at, hit.distance_m, limit,
+               who(person) + " comes " + figure(hit.distance_m, "m") + " near the moving obstacle " +
+                   std::to_string(hit.obstacle + 1) + " of section '" + plan_.sections[hit.section].name + "' " +
+                   way_text(person, hit.at) + " at " + time_text(hit.at) + " (at least " + figure(limit, "m") + ")"});
+    }
   }
 
   Findings shared_cells() const {
@@ -294,6 +307,7 @@ class Judge {
   const Plan& plan_;
   Walks walks_;
   BlockedFloor blocked_;
+  judge::MovingObstacles moving_;
 };
 
 }  // namespace

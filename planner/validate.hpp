@@ -19,6 +19,7 @@ struct Violation {
     too_close,  ///< nearer than the clearance while walking or standing
     too_fast,
     into_blocked,     ///< a walk nearer to a blocked cell than half of the clearance, or the body's radius
+    into_obstacle,    ///< the same of an obstacle that moves through the section
     wrong_formation,  ///< a formation differs from the marks of its instant
   };
   Kind kind = Kind::times;

@@ -14,6 +14,11 @@ constexpr double kRounding = 1e-9;
 
 }  // namespace
 
+double straight_per_step(GridKind kind) {
+  if (kind == GridKind::square) return std::sqrt(0.5);
+  return kind == GridKind::hexagonal ? std::sqrt(0.75) : 0.75;
+}
+
 Beats beats_between(const TempoMap& tempo, Instant from, Instant to, double least_s) {
   const double first = std::ceil(tempo.count_at(from) - kNearCount);
   const double last = std::floor(tempo.count_at(to) + kNearCount);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/grid.hpp"
 #include "core/tempo_map.hpp"
 
 namespace footlight::planner {
@@ -15,6 +16,10 @@ struct Beats {
 
   [[nodiscard]] int steps() const { return at.empty() ? 0 : static_cast<int>(at.size()) - 1; }
 };
+
+/// How far in a straight line somebody comes at least with a step over cells, in pitches: along a diagonal; between two
+/// of six directions; across the rows of triangles.
+[[nodiscard]] double straight_per_step(GridKind kind);
 
 /// Steps of one count each that lie wholly between two instants; of several counts where one is shorter than
 /// `least_s`, the shortest time that a step may take at any tempo in between. O(steps log changes)

@@ -88,7 +88,11 @@ class Caster {
     for (std::size_t k = last; k-- > at + 1;) wanted = backward(k, wanted);
     const ClassMatchTask task{&grid_, stations_[at].cells, label, stations_[at + 1].cells, so_far_, person_of(last)};
     settle_open_places(task, wanted);
-    tracks_.pairing[at] = match_classes(task, wanted, [&](const ClassLot& lot) { return pair_lot(at, lot); });
+    if (stations_[at + 1].follows && agree(label, wanted, last)) {
+      pair_freely(at);
+    } else {
+      tracks_.pairing[at] = match_classes(task, wanted, [&](const ClassLot& lot) { return pair_lot(at, lot); });
+    }
     label = forward(at, label);
     for (std::size_t k = at + 1; k < last; ++k) {
       label = forward(k, label);
@@ -96,6 +100,17 @@ class Caster {
     }
     asked = std::move(wanted);
     return label;
+  }
+
+  /// Whether everybody can stay on the track that she follows: as many tracks lead from each class to each class as
+  /// there are such performers.
+  [[nodiscard]] bool agree(const Classes& label, const Classes& wanted, std::size_t last) const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> left;
+    for (std::size_t i = 0; i < people_; ++i) {
+      ++left[{label[i], wanted[i]}];
+      --left[{so_far_[i], person_of(last)[i]}];
+    }
+    return std::all_of(left.begin(), left.end(), [](const auto& one) { return one.second == 0; });
   }
 
   [[nodiscard]] const Classes& person_of(std::size_t station) const { return casting_.bindings[station].person; }

@@ -45,7 +45,8 @@ struct CastTracks {
 };
 
 /// The stretch of formations between two that bind people is paired as if nobody were bound, but for the one change
-/// with most time in it: there each class goes to its own places. Who has been anywhere so far, and where, makes the
+/// with most time in it: there each class goes to its own places, unless a model of motion has led it there
+/// (`Station::follows`). Who has been anywhere so far, and where, makes the
 /// class of somebody who leaves; whom the next binding asks for makes that of who arrives.
 /// @param pair as if nobody were bound  @param ready pairings that need not be made anew, by interval; empty elsewhere
 [[nodiscard]] CastTracks cast_tracks(const Grid& grid, const std::vector<Station>& stations, const Casting& casting,

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "core/check.hpp"
 #include "planner/hierarchy/hierarchical_matching.hpp"
+#include "planner/motion/swept_discs.hpp"
 #include "planner/parallel.hpp"
 #include "planner/schedule/beats.hpp"
 #include "planner/schedule/mend.hpp"
@@ -22,13 +24,6 @@ constexpr double kViaPitches = 4.5;
 /// Longest steps in which people wait before or after a walk to an exact formation: a count is halved until it is no
 /// longer than this. Every instant is a switch of all markers; in films the drawing gives way instead.
 constexpr double kWait_s = 0.6;
-
-/// How far in a straight line somebody comes at least with a step over cells, in pitches: along a diagonal; between two
-/// of six directions; across the rows of triangles.
-double straight_per_step(GridKind kind) {
-  if (kind == GridKind::square) return std::sqrt(0.5);
-  return kind == GridKind::hexagonal ? std::sqrt(0.75) : 0.75;
-}
 
 class ChainBuilder {
  public:
@@ -51,6 +46,7 @@ class ChainBuilder {
     if (!pair_all()) return std::nullopt;
     follow_slots();
     for (std::size_t s = 0; s < stations_.size(); ++s) add_stop(s);
+    if (has_moving_obstacles(*task_.show)) keep_off_discs();
     if (!pace()) return std::nullopt;
     if (over_cells()) {
       chain_ = stops_over_cells(std::move(chain_), after_, beats_, *task_.show);
@@ -173,6 +169,36 @@ class ChainBuilder {
     chain_.longest_m.push_back(std::max(0.0, speed * to_seconds(arrive - depart) - kRounding_m));
   }
 
+  /// The floor of each walk while something moves over it.
+  void keep_off_discs() {
+    const std::vector<Stop>& stops = chain_.stops;
+    leg_ways_.resize(stops.size());
+    leg_floor_.assign(stops.size(), floor_);
+    for (std::size_t k = 1; k < stops.size(); ++k) {
+      const Instant next = k + 1 < stops.size() ? stops[k + 1].arrive : stops[k].depart;
+      const std::vector<SweptDisc> during = swept_discs(*task_.show, stops[k - 1].depart, stops[k].arrive);
+      const std::vector<SweptDisc> after = swept_discs(*task_.show, stops[k].arrive, next);
+      if (during.empty() && after.empty()) continue;
+      StageHash hash("floor with discs");
+      hash.add(floor_);
+      for (const auto* discs : {&during, &after}) {
+        hash.add(discs->size());
+        for (const SweptDisc& disc : *discs) {
+          hash.add(disc.from.x).add(disc.from.y).add(disc.to.x).add(disc.to.y).add(disc.radius_m);
+        }
+      }
+      leg_floor_[k] = hash.key();
+      leg_ways_[k] = std::make_unique<const Ways>(ways_.beside(during, after));
+    }
+  }
+  /// Of the walk to a stop.
+  [[nodiscard]] const Ways& ways_toward(std::size_t k) const {
+    return k < leg_ways_.size() && leg_ways_[k] ? *leg_ways_[k] : ways_;
+  }
+  [[nodiscard]] const StageKey& floor_toward(std::size_t k) const {
+    return k < leg_floor_.size() ? leg_floor_[k] : floor_;
+  }
+
   [[nodiscard]] bool over_cells() const { return task_.show->stage.walk == WalkKind::cells; }
 
   /// Between two exact formations, where blocked cells are in somebody's way.
@@ -258,7 +284,8 @@ class ChainBuilder {
   [[nodiscard]] std::vector<double> radius_toward(std::size_t k) const { return toward(k, casting_.radius_m); }
   [[nodiscard]] MendTask mending() const {
     return {&task_, [this](std::size_t k) { return kind_toward(k); },
-            [this](std::size_t k) { return radius_toward(k); }, [this](Instant at) { return wait_s(at); }};
+            [this](std::size_t k) { return radius_toward(k); }, [this](Instant at) { return wait_s(at); },
+            [this](std::size_t k) { return &ways_toward(k); }};
   }
   static std::vector<std::uint32_t> numbers(std::size_t size) {
     std::vector<std::uint32_t> out(size);
@@ -283,7 +310,7 @@ class ChainBuilder {
       const std::size_t n = k - first;
       if (!stop.station) aim_on_the_way(k, heading_of(k), wanted[n]);
       StepTask task;
-      task.snap.ways = &ways_;
+      task.snap.ways = &ways_toward(k);
       task.snap.now = chain_.stops[k - 1].cells;
       task.snap.own = instants[n].own;
       task.snap.wanted = wanted[n];
@@ -308,7 +335,8 @@ class ChainBuilder {
       task.kind = kind;
       task.radius_m = radius_m;
       task.stop = progress_.stop;
-      Step step = walk_step(task, floor_, task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
+      Step step =
+          walk_step(task, floor_toward(k), task_.stages, task_.counts == nullptr ? nullptr : &task_.counts->walks);
       if (stop.exact) {
         for (std::uint32_t& target : step.leg.target_of) target = place_of_[*stop.station][target];
       } else {
@@ -387,8 +415,10 @@ class ChainBuilder {
   std::vector<std::vector<std::uint32_t>> who_;       // performer on each place of each station as drawn; may be empty
   std::vector<std::vector<std::uint32_t>> kinds_;     // of each performer in each interval between stations
   StageKey floor_{};
-  std::vector<Beats> beats_;       // over cells: of each leg
-  std::vector<StepsOfLeg> after_;  // over cells: of each leg, as Step::after
+  std::vector<std::unique_ptr<const Ways>> leg_ways_;  // of the walk to each stop; nothing: ways_; empty: of none
+  std::vector<StageKey> leg_floor_;                    // as leg_ways_
+  std::vector<Beats> beats_;                           // over cells: of each leg
+  std::vector<StepsOfLeg> after_;                      // over cells: of each leg, as Step::after
   Chain chain_;
 };
 

@@ -25,7 +25,7 @@ constexpr std::array kLonger{1.25, 1.5, 2.0, 3.0, 5.0, 8.0};
 class Mender {
  public:
   Mender(const MendTask& task, Chain& chain, const Progress& progress)
-      : task_(task), show_(*task.chain->show), ways_(*task.chain->ways), chain_(chain), progress_(progress) {}
+      : task_(task), show_(*task.chain->show), ways_(task.chain->ways), chain_(chain), progress_(progress) {}
 
   bool run() {
     whole_.first_place = chain_.first_place;
@@ -34,6 +34,7 @@ class Mender {
       if (progress_.stopped()) return false;
       std::size_t end = k;
       while (!chain_.stops[end].station) ++end;
+      ways_ = task_.ways_toward(end);
       if (!chain_.stops[end].exact || !replaced(k, end)) keep(k, end);
       k = end + 1;
     }
@@ -69,7 +70,7 @@ class Mender {
     if (around(k, end, lag_s) || clear(k, end)) return false;
     const std::size_t before = whole_.stops.size();
     const std::vector<std::uint32_t> kind = task_.kind_toward(end);
-    if (!ways_.open() && kind.empty()) {
+    if (!ways_->open() && kind.empty()) {
       if (shift_to(chain_.stops[end])) return true;
       forget_after(before);
     }
@@ -119,7 +120,7 @@ class Mender {
                                             const std::vector<CellIndex>& to, const std::vector<double>& radius_m,
                                             const DetourLimits& limits) const {
     if (!leg.walkable || limits.time_s <= 0) return std::nullopt;
-    DetourTask task{&ways_, from, to, task_.chain->clearance_m, limits.longest_m / limits.time_s, limits.time_s};
+    DetourTask task{ways_, from, to, task_.chain->clearance_m, limits.longest_m / limits.time_s, limits.time_s};
     task.lag_s = limits.lag_s;
     task.beat_s = task_.beat_s(limits.arrive);
     task.radius_m = radius_m;
@@ -149,8 +150,8 @@ class Mender {
   bool shift_to(const Stop& goal) {
     const Stop start = whole_.stops.back();
     const double total_s = to_seconds(goal.arrive - start.depart);
-    const int most = static_cast<int>(total_s * speed(goal) / (kStepMargin * ways_.grid().pitch_m()));
-    const auto places = shift({&ways_, start.cells, goal.cells, most});
+    const int most = static_cast<int>(total_s * speed(goal) / (kStepMargin * ways_->grid().pitch_m()));
+    const auto places = shift({ways_, start.cells, goal.cells, most});
     if (!places) return false;
     const std::size_t steps = places->size() - 1;
     for (std::size_t step = 0; step < steps;) {
@@ -176,7 +177,7 @@ class Mender {
 
   [[nodiscard]] Leg walk(const std::vector<CellIndex>& from, const std::vector<CellIndex>& to, double walked_s,
                          double speed_mps) const {
-    LegTask leg{&ways_, from, to, std::max(0.0, speed_mps * walked_s - kRounding_m), task_.chain->clearance_m};
+    LegTask leg{ways_, from, to, std::max(0.0, speed_mps * walked_s - kRounding_m), task_.chain->clearance_m};
     leg.late_share = std::min(1.0, to_seconds(show_.stage.lag) / walked_s);
     leg.stop = progress_.stop;
     return settle(leg);
@@ -185,7 +186,7 @@ class Mender {
   /// Turns positions in `cells` into positions in `own`, the same cells in another order.
   void reorder(const std::vector<CellIndex>& cells, const std::vector<CellIndex>& own,
                std::vector<std::uint32_t>& target_of) const {
-    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(ways_.grid().size()), 0);
+    std::vector<std::uint32_t> at_cell(static_cast<std::size_t>(ways_->grid().size()), 0);
     for (std::uint32_t i = 0; i < own.size(); ++i) at_cell[own[i].at()] = i;
     for (std::uint32_t& target : target_of) target = at_cell[cells[target].at()];
   }
@@ -194,7 +195,7 @@ class Mender {
   [[nodiscard]] bool too_far(const Stop& goal, double total_s) const {
     const std::vector<CellIndex>& from = whole_.stops.back().cells;
     for (std::size_t i = 0; i < from.size(); ++i) {
-      const double walk_m = distance(ways_.grid().centre(from[i]), ways_.grid().centre(goal.own[i]));
+      const double walk_m = distance(ways_->grid().centre(from[i]), ways_->grid().centre(goal.own[i]));
       if (walk_m > speed(goal) * total_s) return true;
     }
     return false;
@@ -206,7 +207,7 @@ class Mender {
     const Stop& goal = chain_.stops[end];
     const std::vector<CellIndex>& from = whole_.stops.back().cells;
     if (from.size() > kMostPassing || too_far(goal, total_s)) return std::nullopt;
-    PassTask task{&ways_, from, goal.own, kind};
+    PassTask task{ways_, from, goal.own, kind};
     task.clearance_m = task_.chain->clearance_m;
     task.speed_mps = speed(goal) / kStepMargin;
     task.time_s = total_s;
@@ -240,7 +241,7 @@ class Mender {
     const std::vector<std::uint32_t> kind = task_.kind_toward(end);
     const std::vector<double> radius_m = task_.radius_toward(end);
     const double longest_m = std::max(0.0, speed(goal) * time_s - kRounding_m);
-    LegTask task{&ways_, from, goal.own, longest_m, task_.chain->clearance_m, kind};
+    LegTask task{ways_, from, goal.own, longest_m, task_.chain->clearance_m, kind};
     task.stagger_share = task_.beat_s(goal.arrive) / time_s;
     task.radius_m = radius_m;
     task.stop = progress_.stop;
@@ -256,7 +257,7 @@ class Mender {
     Chain::Passed& passed = whole_.passed.emplace_back();
     passed.first_stop = whole_.stops.size() - 1;
     passed.last_stop = passed.first_stop + steps;
-    const Grid& grid = ways_.grid();
+    const Grid& grid = ways_->grid();
     const auto walk_m = [&](const std::vector<CellIndex>& from, const std::vector<CellIndex>& to) {
       double sum = 0;
       for (std::size_t i = 0; i < from.size(); ++i) sum += distance(grid.centre(from[i]), grid.centre(to[i]));
@@ -282,7 +283,7 @@ class Mender {
 
   const MendTask& task_;
   const Show& show_;
-  const Ways& ways_;
+  const Ways* ways_;  ///< of the walk that is looked at
   Chain& chain_;
   const Progress& progress_;
   Chain whole_;

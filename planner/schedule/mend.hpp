@@ -16,6 +16,8 @@ struct MendTask {
   std::function<std::vector<double>(std::size_t stop)> radius_toward;
   /// Marks on the way to an instant lie on multiples of this, s.
   std::function<double(Instant at)> beat_s;
+  /// The floor of the walk to a stop.
+  std::function<const Ways*(std::size_t stop)> ways_toward;
 };
 
 /// Where the walks to an exact formation conflict (also when people are late) or cannot be walked, puts other walks in

@@ -168,7 +168,9 @@ class Snapper {
   void add_staying(std::size_t slot, Point at, std::vector<Choice>& choices) const {
     const CellIndex stay = task_.now[slot];
     const bool listed = std::any_of(choices.begin(), choices.end(), [&](const Choice& c) { return c.cell == stay; });
-    if (!listed) choices.push_back({stay, 100 + cost(slot, at, stay)});
+    // Where something that moves comes next she stays only when there is nowhere else.
+    const double in_the_way = ways_.can_stand(stay) ? 0 : kTooFarFromGoal;
+    if (!listed) choices.push_back({stay, 100 + in_the_way + cost(slot, at, stay)});
   }
 
   /// Of somebody who could be on time.

@@ -60,6 +60,22 @@ Ways::Ways(const Stage& stage, double keep_m)
   }
 }
 
+Ways Ways::beside(const std::vector<SweptDisc>& during, const std::vector<SweptDisc>& after) const {
+  Ways out = *this;
+  for (const auto* discs : {&during, &after}) {
+    for (const SweptDisc& disc : *discs) {
+      const double keep_off_m = disc.radius_m + keep_m_;
+      const Point middle = 0.5 * (disc.from + disc.to);
+      for (const CellIndex cell : grid_.within(middle, distance(disc.from, disc.to) / 2 + keep_off_m)) {
+        const double away_m = point_to_segment(grid_.centre(cell), disc.from, disc.to);
+        if (away_m < keep_off_m - kRounding_m) out.standable_[cell.at()] = 0;
+      }
+    }
+  }
+  out.during_ = during;
+  return out;
+}
+
 double Ways::outline_distance(Point from, Point to, CellIndex blocked) const {
   const auto outline = grid_.outline(blocked);
   if (inside(from, outline)) return 0;
@@ -71,7 +87,10 @@ double Ways::outline_distance(Point from, Point to, CellIndex blocked) const {
 }
 
 bool Ways::straight(Point from, Point to) const {
-  if (open()) return true;
+  for (const SweptDisc& disc : during_) {
+    if (segment_to_segment(from, to, disc.from, disc.to) < disc.radius_m + keep_m_ - kRounding_m) return false;
+  }
+  if (blocked_cells_.empty()) return true;
   // Circles along the walk, so that a long walk does not look at a square of its own length.
   const double walk_m = distance(from, to);
   const int pieces = std::max(1, static_cast<int>(std::ceil(walk_m / (2 * grid_.pitch_m()))));

@@ -8,6 +8,13 @@
 
 namespace footlight::planner {
 
+/// All places of a disc that moves straight.
+struct SweptDisc {
+  Point from;
+  Point to;
+  double radius_m = 0;
+};
+
 /// Where people can stand and walk: blocked cells, as their outlines on the floor, are kept at a distance all the way:
 /// half of the clearance, or the widest body's radius where that is more.
 class Ways {
@@ -17,13 +24,16 @@ class Ways {
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] double keep_m() const { return keep_m_; }
-  /// Nothing stands in anybody's way on this stage.
-  [[nodiscard]] bool open() const { return blocked_cells_.empty(); }
+  /// The same floor while discs move over it: walks keep off them, `keep_m` from their edges, wherever they are
+  /// `during` the walk, and nobody stands where they are then or `after`.
+  [[nodiscard]] Ways beside(const std::vector<SweptDisc>& during, const std::vector<SweptDisc>& after) const;
+  /// Nothing is in anybody's way.
+  [[nodiscard]] bool open() const { return blocked_cells_.empty() && during_.empty(); }
   [[nodiscard]] const std::vector<CellIndex>& blocked() const { return blocked_cells_; }  ///< ascending
   /// Cells on which somebody may stand, one flag a cell.
   [[nodiscard]] const CellFlags& standable() const { return standable_; }
   [[nodiscard]] bool can_stand(CellIndex cell) const { return standable_[cell.at()] != 0; }
-  /// Whether the straight walk keeps off every blocked cell. O(length)
+  /// Whether the straight walk keeps off every blocked cell and disc. O(length)
   [[nodiscard]] bool straight(Point from, Point to) const;
   /// Length of the shortest way that was found and the point `walked_m` along it: straight where that is free, else
   /// over neighbouring cells and drawn taut. Nothing reachable: stays at `from`, infinite length.
@@ -43,6 +53,7 @@ class Ways {
   std::vector<CellIndex> blocked_cells_;
   CellFlags blocked_;
   CellFlags standable_;
+  std::vector<SweptDisc> during_;
 };
 
 }  // namespace footlight::planner

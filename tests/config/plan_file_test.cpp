@@ -276,7 +276,7 @@ TEST_F(HarmedPlan, ViewsTriggersAndStrangeTablesAreRefusedUnread) {
 
 TEST_F(HarmedPlan, AnotherVersionSaysWhichAndWhatToDo) {
   EXPECT_EQ(after("PRAGMA user_version = 7"),
-            "cannot use '" + file_ + "': it has version 7, this program reads version 3 (plan the show again)");
+            "cannot use '" + file_ + "': it has version 7, this program reads version 4 (plan the show again)");
 }
 
 TEST_F(HarmedPlan, OtherFilesAreNoPlans) {
