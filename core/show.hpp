@@ -155,7 +155,8 @@ struct Override {
   Position position;
 };
 
-struct Motion;  // core/motion.hpp
+struct Motion;   // core/motion.hpp
+struct Terrain;  // core/terrain.hpp
 
 /// A stretch of the show with one source of formations: [start, start + duration + hold].
 struct Section {
@@ -217,6 +218,7 @@ struct Show {
   std::string version;  ///< as its people call it; empty: it has none
   std::string file;     ///< path of the show file
   Stage stage;
+  std::shared_ptr<const Terrain> terrain;  ///< nothing: level ground
   std::vector<Performer> performers;
   std::vector<Understudy> understudies;
   std::vector<Group> groups;

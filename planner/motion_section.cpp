@@ -51,7 +51,8 @@ class MotionSection {
     if (auto error = find_beginning()) return *error;
     if (auto error = check_paths()) return *error;
     if (auto error = choose_instants()) return *error;
-    const MotionFloor floor(ways_, motion_.obstacles, show_.tempo, show_.tempo.at(section_.start_count));
+    const MotionFloor floor(ways_, motion_.obstacles, show_.tempo, show_.tempo.at(section_.start_count),
+                            show_.terrain.get());
     const MotionTask task = motion_task(floor);
     auto led = move_crowd(task, motion_.options, progress_);
     if (!led) return positioned(led.error());

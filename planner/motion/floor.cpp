@@ -22,14 +22,19 @@ Point nearest_on(Point p, Point a, Point b) {
 
 }  // namespace
 
-MotionFloor::MotionFloor(const Ways& ways, std::vector<MovingObstacle> moving, const TempoMap& tempo, Instant start)
-    : ways_(&ways), blocked_(static_cast<std::size_t>(ways.grid().size()), 0) {
+MotionFloor::MotionFloor(const Ways& ways, std::vector<MovingObstacle> moving, const TempoMap& tempo, Instant start,
+                         const Terrain* terrain)
+    : ways_(&ways), blocked_(static_cast<std::size_t>(ways.grid().size()), 0), terrain_(terrain) {
   const Grid& grid = ways.grid();
-  low_ = high_ = grid.centre(CellIndex(0));
+  low_ = high_ = terrain_low_ = terrain_high_ = grid.centre(CellIndex(0));
+  const auto widen = [](Point& low, Point& high, Point at) {
+    low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+  };
   for (int i = 0; i < grid.size(); ++i) {
-    const Point at = grid.centre(CellIndex::of(i));
-    low_ = {std::min(low_.x, at.x), std::min(low_.y, at.y)};
-    high_ = {std::max(high_.x, at.x), std::max(high_.y, at.y)};
+    widen(low_, high_, grid.centre(CellIndex::of(i)));
+    if (terrain_ == nullptr) continue;
+    for (const Point corner : grid.outline(CellIndex::of(i))) widen(terrain_low_, terrain_high_, corner);
   }
   for (const Point corner : grid.outline(CellIndex(0))) {
     cell_radius_m_ = std::max(cell_radius_m_, distance(corner, grid.centre(CellIndex(0))));

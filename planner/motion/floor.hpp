@@ -7,6 +7,7 @@
 #include "core/grid.hpp"
 #include "core/motion.hpp"
 #include "core/tempo_map.hpp"
+#include "core/terrain.hpp"
 #include "planner/schedule/ways.hpp"
 
 namespace footlight::planner {
@@ -16,7 +17,9 @@ namespace footlight::planner {
 class MotionFloor {
  public:
   /// @param tempo, start of the section: moving obstacles are written in counts, a model's time begins at 0 s
-  MotionFloor(const Ways& ways, std::vector<MovingObstacle> moving, const TempoMap& tempo, Instant start);
+  /// @param terrain must live as long as this; nothing: level ground
+  MotionFloor(const Ways& ways, std::vector<MovingObstacle> moving, const TempoMap& tempo, Instant start,
+              const Terrain* terrain = nullptr);
 
   [[nodiscard]] const Ways& ways() const { return *ways_; }
   [[nodiscard]] Point low() const { return low_; }  ///< of the rectangle in which people's centres stay
@@ -41,6 +44,11 @@ class MotionFloor {
   };
   [[nodiscard]] std::vector<Disc> discs(double at_s) const;
 
+  /// Share of everybody's speed that the ground leaves at a point, above 0 and at most 1. O(1)
+  [[nodiscard]] double speed_factor(Point at) const {
+    return terrain_ == nullptr ? 1 : terrain_->speed_factor(at, terrain_low_, terrain_high_);
+  }
+
  private:
   const Ways* ways_;
   Point low_;
@@ -53,6 +61,9 @@ class MotionFloor {
   std::vector<Moving> moving_;
   std::vector<char> blocked_;  ///< one flag a cell
   double cell_radius_m_ = 0;
+  const Terrain* terrain_;
+  Point terrain_low_;  ///< of the rectangle around all cells' outlines
+  Point terrain_high_;
 };
 
 }  // namespace footlight::planner

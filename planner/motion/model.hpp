@@ -35,10 +35,11 @@ concept MotionModel = std::derived_from<typename M::State, Crowd> &&
 };
 
 /// Steps a model until the last of the wanted instants. Positions between two generations are in between on a straight
-/// line. @param at_s ascending, the first 0  @return nothing when stopped. O(steps)
-template <MotionModel M>
+/// line. @param at_s ascending, the first 0  @param after called after each step with the generation before and the new
+/// one  @return nothing when stopped. O(steps)
+template <MotionModel M, class After>
 [[nodiscard]] std::optional<std::vector<std::vector<Point>>> simulate(const M& model, const std::vector<double>& at_s,
-                                                                      const Progress& progress) {
+                                                                      const Progress& progress, After after) {
   typename M::State now = model.begin();
   typename M::State next = now;
   std::vector<std::vector<Point>> out{now.position};
@@ -52,11 +53,17 @@ template <MotionModel M>
       auto& sample = out.emplace_back(now.position);
       for (std::size_t p = 0; p < sample.size(); ++p) sample[p] = sample[p] + share * (next.position[p] - sample[p]);
     }
+    after(std::as_const(now), std::as_const(next));
     std::swap(now, next);
     if (progress.stopped()) return std::nullopt;
     progress.tell("motion", std::min(1.0, end_s / at_s.back()));
   }
   return out;
+}
+template <MotionModel M>
+[[nodiscard]] std::optional<std::vector<std::vector<Point>>> simulate(const M& model, const std::vector<double>& at_s,
+                                                                      const Progress& progress) {
+  return simulate(model, at_s, progress, [](const auto&, const auto&) {});
 }
 
 }  // namespace footlight::planner
