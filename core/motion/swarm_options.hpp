@@ -31,10 +31,10 @@ struct SwarmOptions {
   double pace_spread = 0.2;        ///< V_max is between (1 - this) and 1 times the limit, drawn once a person, [0, 0.9]
   int directions = 8;              ///< tries with a random angle below 90 degrees, 1..64
   double grid_angle_rad = std::numbers::pi / 12;  ///< step of the grid of angles around the best try, 1 to 45 degrees
-  int grid_steps = 3;              ///< steps to each side, 0..12
-  double slow_m = 1;               ///< nearer to the target the speed falls with the distance, m, (0, 20]
-  double follow = 0.8;             ///< share of the section in which a moving target goes its way, (0, 1]
-  double step_s = 0.2;             ///< one iteration, s, [0.02, 2]
+  int grid_steps = 3;                             ///< steps to each side, 0..12
+  double slow_m = 1;    ///< nearer to the target the speed falls with the distance, m, (0, 20]
+  double follow = 0.8;  ///< share of the section in which a moving target goes its way, (0, 1]
+  double step_s = 0.2;  ///< one iteration, s, [0.02, 2]
 };
 
 }  // namespace footlight

@@ -29,7 +29,7 @@ class Collisions {
 
   const MotionTask* task_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> touching_;  ///< in the step before, ascending
-  std::vector<char> at_obstacle_;                                 ///< in the step before, one flag a person
+  std::vector<char> at_obstacle_;                                  ///< in the step before, one flag a person
   std::uint64_t between_people_ = 0;
   std::uint64_t with_obstacles_ = 0;
 };

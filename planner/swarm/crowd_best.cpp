@@ -8,7 +8,8 @@ namespace footlight::planner::swarm {
 void CrowdBest::improve(const Landscape& landscape, std::span<const Point> best, std::span<const double> best_worst,
                         std::span<const std::uint32_t> place, std::span<const Point> shifts) {
   std::vector<double> least;
-  for (std::size_t c = 0; c < offset.size(); ++c) least.push_back(landscape.value(landscape.options().avoid, worst[c], length(offset[c])));
+  for (std::size_t c = 0; c < offset.size(); ++c)
+    least.push_back(landscape.value(landscape.options().avoid, worst[c], length(offset[c])));
   for (std::size_t p = 0; p < best.size(); ++p) {
     const std::uint32_t crowd = landscape.crowd(p);
     const Point from_target = best[p] - landscape.target(place[p], shifts[crowd]);

@@ -16,14 +16,12 @@ struct CrowdBest {
   std::vector<Point> offset;  ///< of each crowd, m
   std::vector<double> worst;  ///< largest cost of an object there
 
-  explicit CrowdBest(std::size_t crowds = 0)
-      : offset(crowds), worst(crowds, std::numeric_limits<double>::infinity()) {}
+  explicit CrowdBest(std::size_t crowds = 0) : offset(crowds), worst(crowds, std::numeric_limits<double>::infinity()) {}
 
   /// Takes what is better by Eq. 9 among what each person has found herself. The first of equals.
   /// @param best, worst P_BLS of each person  @param place of each person  @param shifts as Landscape::shifts
   void improve(const Landscape& landscape, std::span<const Point> best, std::span<const double> best_worst,
                std::span<const std::uint32_t> place, std::span<const Point> shifts);
 };
-
 
 }  // namespace footlight::planner::swarm

@@ -33,8 +33,7 @@ struct Pull {
 /// The thesis keeps the speed apart (Eq. 7), so what comes out is made a unit vector again. Two pulls that cancel leave
 /// the direction as it was.
 [[nodiscard]] inline Point next_direction(Point direction, Point at, Point best, Point group_best, const Pull& pull) {
-  const Point sum =
-      pull.inertia * direction + pull.cognitive * unit(best - at) + pull.social * unit(group_best - at);
+  const Point sum = pull.inertia * direction + pull.cognitive * unit(best - at) + pull.social * unit(group_best - at);
   return squared_length(sum) > 0 ? unit(sum) : direction;
 }
 
@@ -53,8 +52,8 @@ struct Pull {
   return std::max(0.0, 1 - cost * std::exp(hardness));
 }
 
-/// P(t+1) = P(t) + D(t+1) S(t+1): the speed S for Eq. 7, as share of V_max. The thesis gives no formula for "slower near
-/// an obstacle" and "decreases gradually close to the goal": as Eq. 10 accepts, and evenly within `slow_m`.
+/// P(t+1) = P(t) + D(t+1) S(t+1): the speed S for Eq. 7, as share of V_max. The thesis gives no formula for "slower
+/// near an obstacle" and "decreases gradually close to the goal": as Eq. 10 accepts, and evenly within `slow_m`.
 [[nodiscard]] inline double speed_share(double cost, double hardness, double to_target_m, double slow_m) {
   constexpr double kSlowest = 0.3;  // or who touches somebody could never leave
   return std::max(kSlowest, acceptance(cost, hardness)) * std::min(1.0, to_target_m / slow_m);

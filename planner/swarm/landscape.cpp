@@ -25,7 +25,8 @@ constexpr double kMostFields = 200;
 std::string at_text(Point at) { return fmt::format("({:.2f} m, {:.2f} m)", at.x, at.y); }
 
 /// People and places by the class they may exchange in.
-using Classes = std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::vector<std::uint32_t>, std::vector<std::uint32_t>>>;
+using Classes = std::map<std::pair<std::uint32_t, std::uint32_t>,
+                         std::pair<std::vector<std::uint32_t>, std::vector<std::uint32_t>>>;
 
 }  // namespace
 
@@ -85,8 +86,9 @@ std::optional<Error> Landscape::place_people() {
   for (const Point place : places_) {
     const auto near = floor_->nearest(place, ways.keep_m());
     if (!near || near->distance_m >= ways.keep_m() - kRounding_m) continue;
-    return input_error(fmt::format("the target at {} lies in an obstacle (people stay {:g} m away from what is blocked)",
-                                   at_text(place), ways.keep_m()));
+    return input_error(
+        fmt::format("the target at {} lies in an obstacle (people stay {:g} m away from what is blocked)",
+                    at_text(place), ways.keep_m()));
   }
   Classes classes;
   const bool grouped = !task_->to_group.empty();
@@ -101,18 +103,19 @@ std::optional<Error> Landscape::place_people() {
   for (const auto& [key, both] : classes) {
     const auto& [who, where] = both;
     if (where.size() > who.size()) {
-      return input_error(fmt::format("{} target{} cannot be reached, for example that at {}: what is blocked lies between "
-                                     "{} and everybody who may go there (open a way, or move the formation)",
-                                     where.size() - who.size(), where.size() - who.size() == 1 ? "" : "s",
-                                     at_text(places_[where.back()]), where.size() - who.size() == 1 ? "it" : "them"));
+      return input_error(
+          fmt::format("{} target{} cannot be reached, for example that at {}: what is blocked lies between "
+                      "{} and everybody who may go there (open a way, or move the formation)",
+                      where.size() - who.size(), where.size() - who.size() == 1 ? "" : "s",
+                      at_text(places_[where.back()]), where.size() - who.size() == 1 ? "it" : "them"));
     }
     std::vector<Point> from;
     std::vector<Point> to;
     for (const std::uint32_t p : who) from.push_back(task_->from[p]);
     for (const std::uint32_t place : where) to.push_back(places_[place]);
     if (from.size() != to.size()) continue;  // another class has too many and says so
-    const auto pairing = task_->to.empty() ? std::nullopt
-                                           : assign(from, to, WalkCost::squared, std::numeric_limits<double>::infinity());
+    const auto pairing =
+        task_->to.empty() ? std::nullopt : assign(from, to, WalkCost::squared, std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < who.size(); ++i) {
       first_place_[who[i]] = pairing ? where[pairing->target_of[i]] : who[i];
       class_of_[who[i]] = number;
@@ -153,9 +156,10 @@ std::optional<Error> Landscape::lay_paths() {
       const Point to = crowd.through[n];
       const bool last = n + 1 == crowd.through.size();  // the middle of a ring may well be blocked
       if (!last && !floor_->ways().straight(from, to)) {
-        return input_error(fmt::format("the target's way leads through an obstacle, between {} and {} (lead it around, "
-                                       "{:g} m away from what is blocked)",
-                                       at_text(from), at_text(to), floor_->ways().keep_m()));
+        return input_error(
+            fmt::format("the target's way leads through an obstacle, between {} and {} (lead it around, "
+                        "{:g} m away from what is blocked)",
+                        at_text(from), at_text(to), floor_->ways().keep_m()));
       }
       crowd.length_m += distance(from, to);
     }
@@ -165,9 +169,10 @@ std::optional<Error> Landscape::lay_paths() {
     }
     const double target_mps = crowd.length_m / follow_s();
     if (target_mps > slowest_mps) {
-      notes_.push_back(fmt::format("a target moves at {:.2f} m/s, and not everybody who follows it can walk more than "
-                                   "{:.2f} m/s",
-                                   target_mps, slowest_mps));
+      notes_.push_back(
+          fmt::format("a target moves at {:.2f} m/s, and not everybody who follows it can walk more than "
+                      "{:.2f} m/s",
+                      target_mps, slowest_mps));
     }
   }
   return std::nullopt;
@@ -226,9 +231,7 @@ bool Landscape::step_is_free(Point from, Point to) const {
   return to.x >= low.x && to.x <= high.x && to.y >= low.y && to.y <= high.y;
 }
 
-double Landscape::ground_cost(Point at) const {
-  return std::exp(-options_.hardness) * (1 - floor_->speed_factor(at));
-}
+double Landscape::ground_cost(Point at) const { return std::exp(-options_.hardness) * (1 - floor_->speed_factor(at)); }
 
 WayField::Toward Landscape::toward(std::size_t person, Point at, Point target, double at_s) const {
   const Ways& ways = floor_->ways();

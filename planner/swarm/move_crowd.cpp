@@ -91,9 +91,9 @@ std::string method_name(const SwarmOptions& options) {
 
 /// What people are told: collisions of the trajectory itself, and who is still on the way.
 std::string note(const SwarmOptions& options, const Collisions& collisions, std::size_t late) {
-  std::string out =
-      fmt::format("{} has {} collision{} between people and {} with obstacles on its way", method_name(options),
-                  collisions.between_people(), collisions.between_people() == 1 ? "" : "s", collisions.with_obstacles());
+  std::string out = fmt::format("{} has {} collision{} between people and {} with obstacles on its way",
+                                method_name(options), collisions.between_people(),
+                                collisions.between_people() == 1 ? "" : "s", collisions.with_obstacles());
   if (late > 0) {
     out += fmt::format("; at its end {} {} more than {:g} m from a place", late, late == 1 ? "is" : "are", kArrived_m);
   }

@@ -13,8 +13,7 @@
 namespace footlight::planner::swarm {
 
 OriginalSwarm::OriginalSwarm(const Landscape& landscape)
-    : landscape_(&landscape),
-      knows_target_(landscape.options().best == SwarmOptions::Best::target) {}
+    : landscape_(&landscape), knows_target_(landscape.options().best == SwarmOptions::Best::target) {}
 
 OriginalSwarm::State OriginalSwarm::begin() const {
   const MotionTask& task = landscape_->task();
@@ -70,7 +69,8 @@ void OriginalSwarm::step(const State& now, State& next) const {
       const Point target = landscape_->target(places[p], shifts[landscape_->crowd(p)]);
       step_one(now, next, p, target);
       const double worst = worst_cost(p, next.position[p], from_s + step_s());
-      const double best = landscape_->value(landscape_->options().avoid, now.best_worst[p], distance(now.best[p], target));
+      const double best =
+          landscape_->value(landscape_->options().avoid, now.best_worst[p], distance(now.best[p], target));
       if (landscape_->value(landscape_->options().avoid, worst, distance(next.position[p], target)) > best) continue;
       next.best[p] = next.position[p];
       next.best_worst[p] = worst;

@@ -10,8 +10,8 @@
 namespace footlight::planner::swarm {
 
 /// The original particle swarm as a crowd: Eq. 2-3 of Lin 2007, as section 4.1 there uses it. What is in the way counts
-/// in the cost (Eq. 9) alone, and other people not at all: they walk through each other, and run into obstacles, where they are stopped and
-/// turned back, as at the edge of the floor. Velocities are cut to the limit of speed.
+/// in the cost (Eq. 9) alone, and other people not at all: they walk through each other, and run into obstacles, where
+/// they are stopped and turned back, as at the edge of the floor. Velocities are cut to the limit of speed.
 class OriginalSwarm {
  public:
   struct State : Crowd {

@@ -139,8 +139,8 @@ ProposedSwarm::Option ProposedSwarm::judge(const Turn& turn, const Walker& walke
   for (const Surroundings::Disc& disc : turn.around.discs()) {
     const double both_m = disc.radius_m + landscape_->scope_m(walker.person);
     squared = std::min(squared, squared_to_segment(to, disc.to, disc.ahead) / (both_m * both_m));
-    const double keep_m = std::max(disc.radius_m + landscape_->task().radius_m[walker.person],
-                                   std::sqrt(hardness) * both_m);
+    const double keep_m =
+        std::max(disc.radius_m + landscape_->task().radius_m[walker.person], std::sqrt(hardness) * both_m);
     const Approach approach = closest_approach({walker.at, to}, {disc.from, disc.to});
     out.disc_m = std::min(out.disc_m, approach.distance_m - keep_m);
   }

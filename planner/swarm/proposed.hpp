@@ -55,14 +55,14 @@ class ProposedSwarm {
     Point heading_for;
     double rest_m = 0;
     std::span<const Surroundings::Near> near;
-    double avoid = 0;  ///< c_obj
+    double avoid = 0;          ///< c_obj
     double still_squared = 0;  ///< squared distance by scope to the nearest person or blocked point, where she stands
   };
   /// One of the points that she might step to.
   struct Option {
     Point to;
-    double worst = 0;  ///< cost of the nearest object, the ground included
-    double value = 0;  ///< Eq. 9
+    double worst = 0;      ///< cost of the nearest object, the ground included
+    double value = 0;      ///< Eq. 9
     bool allowed = false;  ///< touches nobody, and nothing that stands
     double disc_m = 0;     ///< how far it stays off everything that moves, beyond what it has to; negative: too near
     [[nodiscard]] bool free() const { return allowed && disc_m >= 0; }

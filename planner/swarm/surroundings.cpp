@@ -32,13 +32,13 @@ Surroundings::Surroundings(const Landscape& landscape, std::span<const Point> pe
     step_m = std::max(step_m, task.speed_mps[p] * (to_s - from_s));
   }
   const double far_squared = std::max(kFarSquared, landscape.options().hardness);
-  reach_m_ = std::max(2 * scope_m * std::sqrt(far_squared) , 2 * radius_m) + 2 * step_m;
+  reach_m_ = std::max(2 * scope_m * std::sqrt(far_squared), 2 * radius_m) + 2 * step_m;
   neighbours_.sort(people, std::max(reach_m_ / 2, 1e-3));
   const auto before = task.floor->discs(from_s);
   const auto after = task.floor->discs(to_s);
   for (std::size_t d = 0; d < before.size(); ++d) {
-    discs_.push_back({before[d].centre, after[d].centre, after[d].centre + kAhead_s * after[d].velocity,
-                      before[d].radius_m});
+    discs_.push_back(
+        {before[d].centre, after[d].centre, after[d].centre + kAhead_s * after[d].velocity, before[d].radius_m});
   }
 }
 

@@ -28,7 +28,7 @@ TEST(SwarmLandscape, ATargetStandsStillWithoutAPath) {
 
 TEST(SwarmLandscape, ATargetGoesEvenlyAlongItsPathAndComesToRest) {
   Scene scene(40, 20);
-  scene.send("A1:A1", "T11:T11");  // rests at (-0.5, 10.5)
+  scene.send("A1:A1", "T11:T11");                      // rests at (-0.5, 10.5)
   scene.path({{-0.5, 2.5}, {3.5, 2.5}, {3.5, 10.5}});  // 4 m, 8 m, and 4 m to where it rests
   SwarmOptions options;
   options.follow = 0.8;  // of 60 s: 48 s

@@ -153,9 +153,8 @@ TEST(Swarm, TheOriginalOneFliesThroughPeople) {
   const auto landscape = Landscape::make(scene.task(), {});
   ASSERT_TRUE(landscape);
   Collisions original(scene.task());
-  step_through(OriginalSwarm(*landscape), 300, [&](const auto& now, const auto& next) {
-    original.step(now.position, next.wanted, 0, 0.2);
-  });
+  step_through(OriginalSwarm(*landscape), 300,
+               [&](const auto& now, const auto& next) { original.step(now.position, next.wanted, 0, 0.2); });
   EXPECT_GT(original.between_people(), 3U);
 }
 
@@ -177,7 +176,7 @@ TEST(SwarmCollisions, AreCountedSweptAndOnceWhileTheyLast) {
 
 TEST(SwarmCollisions, WithWhatMovesAreSweptInItsFrame) {
   Scene scene(20, 10);
-  scene.send("K5:K5", "K5:K5");  // at (0.5, 4.5)
+  scene.send("K5:K5", "K5:K5");                            // at (0.5, 4.5)
   scene.moving({1, {{1, {-8, 4.5}}, {3, {8, 4.5}}}, {}});  // 16 m in a second
   Collisions counted(scene.task());
   const std::vector<Point> stands{{0.5, 4.5}};
