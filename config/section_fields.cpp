@@ -7,32 +7,50 @@ namespace footlight::config {
 namespace {
 
 const Listing& source_listing() {
-  static const Listing kListing{
-      "sections[].from",
-      "Where the formations come from; `fit`, `threshold` and `invert` go with a video or an image.",
-      {
-          {.key = "video", .type = Type::file, .doc = "A monochrome video, planned key frame by key frame."},
-          {.key = "image", .type = Type::file, .doc = "One picture (PNG, JPEG, BMP, PBM, PGM), one formation."},
-          {.key = "cells",
-           .type = Type::file,
-           .doc = "A CSV file of cells, one formation: `performer,col,row`, by groups `group,col,row`, or `col,row`."},
-          {.key = "frames",
-           .type = Type::frames,
-           .doc = "First and last frame of the video, from 0, the last included; `100-` goes to the end.",
-           .otherwise = "the whole video"},
-          {.key = "fit",
-           .type = Type::choice,
-           .doc = "`area`: the largest key frame fills as many cells as there are people; `contain`: the whole frame "
-                  "lies on the stage without the reserve's columns; `cover`: the frame covers the stage.",
-           .fallback = "area",
-           .choices = {"area", "contain", "cover"}},
-          {.key = "threshold",
-           .type = Type::threshold,
-           .doc = "Pixels brighter than this are the picture; `otsu` finds one value for the section.",
-           .fallback = "otsu"},
-          {.key = "invert", .type = Type::boolean, .doc = "Dark pixels are the picture.", .fallback = "false"},
-      },
-      "video image cells"};
+  static const Listing kListing = [] {
+    Listing out{
+        "sections[].from",
+        "Where the formations come from. `fit`, `threshold` and `invert` go with a video or an image. The keys of a "
+        "single drawing may stand here, too: `{shape: circle, radius: 6 m}`; an image that has a place or a size "
+        "is laid there with people evenly in it, another one fills the floor as `fit` asks.",
+        {},
+        "video image cells parts shape text mesh painting"};
+    const auto add = [&](std::vector<Field> fields) {
+      for (Field& field : fields) out.fields.push_back(std::move(field));
+    };
+    add({
+        {.key = "video", .type = Type::file, .doc = "A monochrome video, planned key frame by key frame."},
+        {.key = "image", .type = Type::file, .doc = "One picture (PNG, JPEG, BMP, PBM, PGM, SVG), one formation."},
+        {.key = "cells",
+         .type = Type::file,
+         .doc = "A CSV file of cells, one formation: `performer,col,row`, by groups `group,col,row`, or `col,row`."},
+        {.key = "parts",
+         .type = Type::mapping,
+         .doc = "Drawings that are one formation together.",
+         .listing = &part_listing(),
+         .list = true},
+        {.key = "painting",
+         .type = Type::file,
+         .doc = "A painting in colours (PNG, JPEG, BMP, PPM) that says where people are, where they go and what is in "
+                "the way."},
+    });
+    add(drawing_fields());
+    add({
+        {.key = "frames",
+         .type = Type::frames,
+         .doc = "First and last frame of the video, from 0, the last included; `100-` goes to the end.",
+         .otherwise = "the whole video"},
+        {.key = "fit",
+         .type = Type::choice,
+         .doc = "`area`: the largest key frame fills as many cells as there are people; `contain`: the whole frame "
+                "lies on the stage without the reserve's columns; `cover`: the frame covers the stage.",
+         .fallback = "area",
+         .choices = {"area", "contain", "cover"}},
+    });
+    add(picture_fields());
+    add(size_fields());
+    return out;
+  }();
   return kListing;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 
 #include "config/motion_part.hpp"
 #include "config/nearest.hpp"
@@ -28,41 +29,53 @@ void read_frames(MappingReader& from, VideoSource& video) {
   video.last_frame = last;
 }
 
-PictureOptions read_picture(MappingReader& from) {
-  PictureOptions out;
-  if (const auto fit = from.choice("fit")) out.fit = static_cast<Fit>(*fit);
-  out.invert = from.boolean("invert").value_or(false);
-  const auto threshold = from.written("threshold");
-  if (threshold && threshold->text != "otsu") {
-    out.threshold = parse_integer(threshold->text);
-    if (!out.threshold || *out.threshold < 0 || *out.threshold > 255) {
-      from.error(*threshold, in_quotes(threshold->text) + " is not a threshold", "0 to 255, or otsu");
-    }
+std::optional<ColourRange> read_colours(MappingReader& range) {
+  std::array<std::optional<Colour>, 2> ends;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto written = range.written(i == 0 ? "from" : "to");
+    if (!written) return std::nullopt;
+    ends[i] = parse_colour(written->text);
+    if (!ends[i]) range.error(*written, in_quotes(written->text) + " is not a colour", "write \"#RRGGBB\", in quotes");
+  }
+  if (!ends[0] || !ends[1]) return std::nullopt;
+  const ColourRange out{*ends[0], *ends[1]};
+  if (out.from.red > out.to.red || out.from.green > out.to.green || out.from.blue > out.to.blue) {
+    range.error("to", "no colour lies between " + to_text(out.from) + " and " + to_text(out.to),
+                "each of red, green and blue goes up from the one to the other");
+    return std::nullopt;
   }
   return out;
 }
 
-/// Keys that mean nothing for this kind of source.
-void refuse_keys(MappingReader& from, std::initializer_list<std::string_view> keys, const std::string& hint) {
-  for (const std::string_view key : keys) {
-    if (from.has(key)) from.error(from.key_position(key), from.path(key), "the key has no meaning here", hint);
-  }
+/// How a video or an image lies on the floor, and which pixels are the picture.
+PictureOptions read_fitted_picture(MappingReader& from) {
+  PictureOptions out = read_picture(from);
+  if (const auto fit = from.choice("fit")) out.fit = static_cast<Fit>(*fit);
+  return out;
 }
 
 Source read_source(ShowReading& show, MappingReader from) {
   std::vector<std::string>& files = show.loaded.files;
+  if (from.has("parts") || is_one_part(from)) {
+    refuse_keys(from, {"frames", "fit"}, "it goes with a video, or with an image without a place or a size");
+    return read_parts(show, from);
+  }
+  refuse_keys(from, {"at", "width", "height", "radius", "spacing", "turn", "rows", "angle", "turns", "font", "view"},
+              "it goes with a shape, a text, a mesh or an image");
   if (from.has("video")) {
+    refuse_keys(from, {"colour"}, "only an image has colours");
     VideoSource video;
     video.path = existing_file(from, "video", show.folder, files);
     read_frames(from, video);
-    video.picture = read_picture(from);
+    video.picture = read_fitted_picture(from);
     return video;
   }
   if (from.has("image")) {
     refuse_keys(from, {"frames"}, "only a video has frames");
-    return ImageSource{existing_file(from, "image", show.folder, files), read_picture(from)};
+    return ImageSource{existing_file(from, "image", show.folder, files), read_fitted_picture(from)};
   }
-  refuse_keys(from, {"frames", "fit", "threshold", "invert"}, "it goes with a video or an image");
+  refuse_keys(from, {"frames", "fit", "threshold", "invert", "colour"}, "it goes with a video or an image");
+  if (from.has("painting")) return PaintingSource{existing_file(from, "painting", show.folder, files)};
   const std::string file = from.has("cells") ? existing_file(from, "cells", show.folder, files) : "";
   return file.empty() ? CellsSource{} : read_cells_csv(show, file);
 }
@@ -114,6 +127,7 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
   if (out.motion == nullptr && std::holds_alternative<CellsSource>(out.from)) {
     refuse_keys(reader, {"overrides", "regions"}, "write it into the CSV file");
   }
+  if (std::holds_alternative<PartsSource>(out.from)) refuse_keys(reader, {"regions"}, "a part has a group");
   if (!name || !start || !hold) return std::nullopt;
   out.name = *name;
   out.start_count = *start;
@@ -124,6 +138,30 @@ std::optional<Section> read_section(ShowReading& show, MappingReader& reader) {
 }
 
 }  // namespace
+
+PictureOptions read_picture(MappingReader& from) {
+  PictureOptions out;
+  out.invert = from.boolean("invert").value_or(false);
+  if (from.has("colour")) {
+    refuse_keys(from, {"threshold"}, "the colours say what is the picture");
+    if (auto range = from.mapping("colour")) out.colour = read_colours(*range);
+    return out;
+  }
+  const auto threshold = from.written("threshold");
+  if (threshold && threshold->text != "otsu") {
+    out.threshold = parse_integer(threshold->text);
+    if (!out.threshold || *out.threshold < 0 || *out.threshold > 255) {
+      from.error(*threshold, in_quotes(threshold->text) + " is not a threshold", "0 to 255, or otsu");
+    }
+  }
+  return out;
+}
+
+void refuse_keys(MappingReader& from, std::initializer_list<std::string_view> keys, const std::string& hint) {
+  for (const std::string_view key : keys) {
+    if (from.has(key)) from.error(from.key_position(key), from.path(key), "the key has no meaning here", hint);
+  }
+}
 
 std::string section_path(const std::vector<Section>& sections, const Section& section) {
   const auto place = std::count_if(sections.begin(), sections.end(),

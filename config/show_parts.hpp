@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "config/mapping_reader.hpp"
 #include "config/show_file.hpp"
+#include "core/parts.hpp"
 
 namespace footlight::config {
 
@@ -36,6 +39,17 @@ void read_time(ShowReading& show, MappingReader time);
 void read_sections(ShowReading& show, MappingReader& root);
 /// `keys`, `overrides` and `regions` of a section whose start and duration are known.
 void read_by_hand(ShowReading& show, MappingReader& section, Section& out);
+/// Keys that mean nothing beside what else the mapping says.
+void refuse_keys(MappingReader& from, std::initializer_list<std::string_view> keys, const std::string& hint);
+/// Which pixels are the picture; the fit is the caller's.
+[[nodiscard]] PictureOptions read_picture(MappingReader& from);
+/// Whether `from` is a single drawing, or an image with a place or a size of its own.
+[[nodiscard]] bool is_one_part(const MappingReader& from);
+/// `from.parts`, or the one drawing that `from` is.
+[[nodiscard]] PartsSource read_parts(ShowReading& show, MappingReader& from);
+/// The lines `v` of an OBJ file (Wavefront, "Advanced Visualizer Manual", appendix B1: x, y, z; what follows is weight
+/// or colour); all other lines say nothing about where the corners are. Errors at their line; none at all is one.
+[[nodiscard]] std::vector<std::array<double, 3>> read_mesh(const std::string& file, Diagnostics& diagnostics);
 /// `absent`: who does not come.
 void read_absent(ShowReading& show, MappingReader& root);
 /// "sections[2]": its place in the file, which need not be its place in time.

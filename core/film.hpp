@@ -41,7 +41,8 @@ class Mask {
   std::vector<std::uint64_t> words_;
 };
 
-/// A decoded video or image after thresholding. All frames have one size.
+/// A decoded video, image or painting; of all but paintings what is left after thresholding. All frames have one size.
+/// Of a formation of parts one frame for each that is a picture or lettering, in their order.
 struct Film {
   int width = 0;        ///< pixels
   int height = 0;       ///< pixels
@@ -50,6 +51,9 @@ struct Film {
   int threshold = 128;  ///< a pixel brighter than this belongs to the picture (darker or equal when inverted)
   bool inverted = false;
   std::vector<Mask> frames;
+  /// Of a painting, in the place of frames: width x height x 3 bytes (red, green, blue), row 0 the top; what is
+  /// transparent is white.
+  std::vector<std::uint8_t> rgb{};
 };
 
 }  // namespace footlight

@@ -57,11 +57,20 @@ enum class Fit {
   cover,    ///< the stage is covered by the frame
 };
 
+/// Colours from the darkest to the lightest of each of red, green and blue, both included (Xu 2015, Eq. 1).
+struct ColourRange {
+  Colour from;
+  Colour to;
+
+  friend bool operator==(const ColourRange&, const ColourRange&) = default;
+};
+
 /// What counts as the picture in a frame, and where it lies on the stage.
 struct PictureOptions {
   Fit fit = Fit::area;
-  std::optional<int> threshold;  ///< 0..255; Otsu over the section when absent
-  bool invert = false;           ///< dark pixels are the picture
+  std::optional<int> threshold;         ///< 0..255; Otsu over the section when absent
+  bool invert = false;                  ///< dark pixels are the picture; of colours: all others
+  std::optional<ColourRange> colour{};  ///< of an image in the place of the threshold
 };
 
 struct VideoSource {

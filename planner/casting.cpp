@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/motion.hpp"
+#include "core/parts.hpp"
 #include "planner/formation/cell_distance.hpp"
 
 namespace footlight::planner {
@@ -44,7 +45,12 @@ class StationBinding {
     if (station_.pinned) {
       for (std::uint32_t p = 0; p < people_; ++p) binding_.person[p] = binding_.place[p] = p;
     } else if (groups) {
-      bind_groups([](GroupIndex) { return true; });
+      // Whoever is in a group without places is as good as who is in none.
+      std::vector<char> has_places(show_.groups.size(), 0);
+      for (const auto& group : station_.groups) {
+        if (group) has_places[group->at()] = 1;
+      }
+      bind_groups([&](GroupIndex group) { return has_places[group.at()] != 0; });
       for (std::size_t i = 0; i < station_.cells.size(); ++i) {
         if (station_.groups[i]) binding_.place[i] = class_of(*station_.groups[i]);
       }
@@ -226,6 +232,10 @@ std::vector<char> bound_groups(const Show& show) {
     for (const footlight::Region& region : section.regions) bound[region.group.at()] = 1;
     const auto* list = std::get_if<CellsSource>(&section.from);
     if (list != nullptr && !list->groups.empty()) bound.assign(bound.size(), 1);
+    const auto* parts = std::get_if<PartsSource>(&section.from);
+    for (std::size_t k = 0; parts != nullptr && k < parts->parts->size(); ++k) {
+      if (const auto& group = (*parts->parts)[k].group) bound[group->at()] = 1;
+    }
     if (section.motion == nullptr) continue;
     for (const GroupPath& path : section.motion->paths) {
       if (path.group) bound[path.group->at()] = 1;

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "core/parts.hpp"
 #include "planner/motion_section.hpp"
+#include "planner/parts_section.hpp"
 #include "planner/picture_section.hpp"
 
 namespace footlight::planner {
@@ -68,9 +70,16 @@ Result<SectionPlan> plan_source(const Show& show, SectionIndex index, const std:
                                 const Station* before, const Progress& progress) {
   const Section& section = show.sections[index.at()];
   if (const auto* cells = std::get_if<CellsSource>(&section.from)) return cells_section(show, index, *cells);
-  if (!film || film->frames.empty()) {
+  if (std::holds_alternative<PaintingSource>(section.from)) {
+    return input_error(section_message(show, index,
+                                       "a painting says how people move, and this section has no such model",
+                                       "write planner: {model: painted}"));
+  }
+  const auto* parts = std::get_if<PartsSource>(&section.from);
+  if ((parts == nullptr || needs_pictures(*parts)) && (!film || film->frames.empty())) {
     return internal_error("the frames of section '" + section.name + "' are missing");
   }
+  if (parts != nullptr) return plan_parts(show, index, film, ways);
   return plan_pictures(show, index, *film, ways, before, progress);
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/parts.hpp"
 #include "planner/by_hand.hpp"
 #include "planner/joint_section.hpp"
 #include "planner/parallel.hpp"
@@ -84,7 +85,8 @@ class StationCollector {
 
  private:
   static bool has_film(const Section& section) {
-    return std::holds_alternative<VideoSource>(section.from) || std::holds_alternative<ImageSource>(section.from);
+    const auto* parts = std::get_if<PartsSource>(&section.from);
+    return parts != nullptr ? needs_pictures(*parts) : !std::holds_alternative<CellsSource>(section.from);
   }
   /// Sections with a model of motion are always planned anew; their walks are kept like all others.
   [[nodiscard]] bool moves(SectionIndex index) const { return show_.sections[index.at()].motion != nullptr; }

@@ -369,7 +369,7 @@ TEST_F(ShowFile, RefusesKeysThatMeanNothingForTheSource) {
             "formation has a hold)\n");
   EXPECT_EQ(errors_of_section("name: a, from: {video: film.mp4, image: picture.png}, start: count 1"),
             "show.yaml:6:39: error: sections[0].from.image: does not go with \"video\" (give exactly one of video, "
-            "image, cells)\n");
+            "image, cells, parts, shape, text, mesh, painting)\n");
 }
 
 TEST_F(ShowFile, RefusesWrongNumbersInASection) {
