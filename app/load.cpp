@@ -11,6 +11,7 @@
 
 #include "config/media.hpp"
 #include "config/nearest.hpp"
+#include "core/parts.hpp"
 
 namespace footlight::app {
 namespace {
@@ -30,21 +31,51 @@ bool needs_own_length(const Section& section) {
   return section.duration_counts == 0 && std::holds_alternative<VideoSource>(section.from);
 }
 
+/// Why a film could not be had, and where that is written.
+struct Undecoded {
+  Position position;
+  std::string key;
+  Error error;
+};
+using Decoded = std::optional<Result<Film, Undecoded>>;
+
+Decoded decode_drawings(const Session& session, const Show& show, const Section& section, const PartsSource& source) {
+  if (!needs_pictures(source)) return std::nullopt;
+  auto film = config::decode_parts(source, {}, session.stop());
+  if (film) return std::move(*film);
+  const std::size_t k = film.error().part;
+  const Part& part = (*source.parts)[k];
+  std::string key = key_path(show, section, ".from");
+  if (source.parts->size() > 1) key += fmt::format(".parts[{}]", k);
+  key += std::holds_alternative<Lettering>(part.drawing) ? ".text" : ".image";
+  return Undecoded{part.position, key, film.error().error};
+}
+
 /// @return nothing when the source has no film
-std::optional<Result<Film>> decode(const Session& session, const Section& section) {
+Decoded decode(const Session& session, const Show& show, const Section& section) {
+  const auto of_section = [&](Result<Film> film, const char* key) -> Result<Film, Undecoded> {
+    if (film) return std::move(*film);
+    return Undecoded{section.position, key_path(show, section, key), film.error()};
+  };
   if (const auto* video = std::get_if<VideoSource>(&section.from)) {
-    return config::decode_video(*video, {}, session.stop());
+    return of_section(config::decode_video(*video, {}, session.stop()), ".from.video");
   }
   if (const auto* image = std::get_if<ImageSource>(&section.from)) {
-    return config::decode_image(*image, {}, session.stop());
+    return of_section(config::decode_image(*image, {}, session.stop()), ".from.image");
+  }
+  if (const auto* painting = std::get_if<PaintingSource>(&section.from)) {
+    return of_section(config::decode_painting(*painting, {}, session.stop()), ".from.painting");
+  }
+  if (const auto* parts = std::get_if<PartsSource>(&section.from)) {
+    return decode_drawings(session, show, section, *parts);
   }
   return std::nullopt;
 }
 
 bool shows_nothing(const Film& film) {
-  return std::ranges::all_of(film.frames, [](const Mask& frame) {
-    return std::ranges::all_of(frame.words(), [](std::uint64_t word) { return word == 0; });
-  });
+  return film.rgb.empty() && std::ranges::all_of(film.frames, [](const Mask& frame) {
+           return std::ranges::all_of(frame.words(), [](std::uint64_t word) { return word == 0; });
+         });
 }
 
 Diagnostic empty_picture(const Show& show, const Section& section, const Film& film) {
@@ -52,10 +83,17 @@ Diagnostic empty_picture(const Show& show, const Section& section, const Film& f
   out.severity = Severity::warning;
   out.position = section.position;
   out.key_path = key_path(show, section, ".from");
+  const auto* image = std::get_if<ImageSource>(&section.from);
+  const std::string what =
+      image != nullptr && image->picture.colour
+          ? fmt::format("{} {} and {}", film.inverted ? "outside of" : "between",
+                        footlight::to_text(image->picture.colour->from), footlight::to_text(image->picture.colour->to))
+          : fmt::format("{} {}", film.inverted ? "as dark as" : "brighter than", film.threshold);
   out.text =
-      fmt::format("nothing in it is {} {}: the picture of every frame is empty and everybody waits in the reserve",
-                  film.inverted ? "as dark as" : "brighter than", film.threshold);
-  out.hint = film.inverted ? "a higher threshold, or threshold: otsu" : "a lower threshold, or threshold: otsu";
+      fmt::format("nothing in it is {}: the picture of every frame is empty and everybody waits in the reserve", what);
+  out.hint = image != nullptr && image->picture.colour ? "other colours"
+             : film.inverted                           ? "a higher threshold, or threshold: otsu"
+                                                       : "a lower threshold, or threshold: otsu";
   return out;
 }
 
@@ -115,19 +153,18 @@ Result<Films> decode_films(Session& session, config::LoadedShow& loaded,
       continue;
     }
     session.tell("decoding", static_cast<double>(i) / static_cast<double>(show.sections.size()));
-    auto film = decode(session, section);
+    auto film = decode(session, show, section);
     if (!film) continue;
     if (film->has_value()) {
       Film& whole = **film;
-      if (shows_nothing(whole)) empty.push_back(empty_picture(show, section, whole));
+      if (shows_nothing(whole) && !std::holds_alternative<PartsSource>(section.from))
+        empty.push_back(empty_picture(show, section, whole));
       lengths[i] = config::FilmLength{static_cast<int>(whole.frames.size()), whole.fps};
       films[i] = std::move(whole);
-    } else if (film->error().kind != ErrorKind::input) {
-      return film->error();
+    } else if (film->error().error.kind != ErrorKind::input) {
+      return film->error().error;
     } else {
-      const bool video = std::holds_alternative<VideoSource>(section.from);
-      diagnostics.error(section.position, key_path(show, section, video ? ".from.video" : ".from.image"),
-                        film->error().message);
+      diagnostics.error(film->error().position, film->error().key, film->error().error.message);
     }
   }
   if (diagnostics.has_errors()) return input_error(without_last_newline(diagnostics.to_text()));

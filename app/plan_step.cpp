@@ -91,9 +91,11 @@ class Kept {
     const PictureOptions& picture = video != nullptr ? video->picture : image->picture;
     const auto content = config::hash_files(std::span(&path, 1));
     if (!content) return {};
-    return fmt::format("{} {} {} {} {} {}", *content, video != nullptr, video != nullptr ? video->first_frame : 0,
+    const std::string colours =
+        picture.colour ? to_text(picture.colour->from) + to_text(picture.colour->to) : std::string();
+    return fmt::format("{} {} {} {} {} {} {}", *content, video != nullptr, video != nullptr ? video->first_frame : 0,
                        video != nullptr ? video->last_frame.value_or(-1) : -1, picture.threshold.value_or(-1),
-                       picture.invert);
+                       picture.invert, colours);
   }
 
   std::string file_;

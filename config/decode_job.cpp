@@ -14,15 +14,42 @@ namespace footlight::config {
 namespace {
 
 Error undecodable(const DecodeJob& job) {
+  if (job.kind == DecodeJob::Kind::text) {
+    return input_error(fmt::format("the text '{}' cannot be drawn (write it in UTF-8)", job.path));
+  }
   return input_error(
-      job.video ? fmt::format(
-                      "'{}' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, "
-                      "GIF or MPEG, with a video stream)",
-                      job.path)
-                : fmt::format(
-                      "'{}' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM or PGM, of 1 to "
-                      "{} pixels)",
-                      job.path, job.limits.max_pixels));
+      !job.still()
+          ? fmt::format(
+                "'{}' cannot be decoded as a video (a whole file is needed: MP4, MOV, Matroska, WebM, AVI, Ogg, "
+                "GIF or MPEG, with a video stream)",
+                job.path)
+          : fmt::format(
+                "'{}' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM, PGM or SVG, of 1 "
+                "to {} pixels)",
+                job.path, job.limits.max_pixels));
+}
+
+/// A character as text; what is none as a question mark.
+std::string utf8_of(std::int64_t code) {
+  std::string out;
+  const auto tail = [&](int shift) { out += static_cast<char>(0x80 | ((code >> shift) & 0x3F)); };
+  if (code < 0x20 || code > 0x10FFFF) return "?";
+  if (code < 0x80) {
+    out = static_cast<char>(code);
+  } else if (code < 0x800) {
+    out = static_cast<char>(0xC0 | (code >> 6));
+    tail(0);
+  } else if (code < 0x10000) {
+    out = static_cast<char>(0xE0 | (code >> 12));
+    tail(6);
+    tail(0);
+  } else {
+    out = static_cast<char>(0xF0 | (code >> 18));
+    tail(12);
+    tail(6);
+    tail(0);
+  }
+  return out;
 }
 
 /// The child has ended without having said all. @param status its wait status
@@ -72,6 +99,23 @@ Error refused_by_child(const DecodeJob& job, const DecodeRecord& said) {
     case DecodeStatus::size_changes:
       return input_error(fmt::format("'{}' changes its frame size at frame {} (all frames of a film have one size)",
                                      job.path, said.count));
+    case DecodeStatus::unknown_font:
+      return input_error(
+          fmt::format("no font here is called '{}' (fc-list shows their names; as Noto Sans CJK SC Bold)", job.font));
+    case DecodeStatus::missing_character:
+      return input_error(fmt::format("{} has no character '{}' (U+{:04X}) (another font may have it)",
+                                     job.font.empty() ? "no font here" : "the font '" + job.font + "'",
+                                     utf8_of(said.count), said.count));
+    case DecodeStatus::nothing_drawn:
+      return input_error(fmt::format("nothing is drawn by '{}' (a drawing has a size and something in it)", job.path));
+    case DecodeStatus::outside_reference:
+      return input_error(
+          fmt::format("'{}' refers to other files, which are not read (put everything into one)", job.path));
+    case DecodeStatus::without_svg:
+      return input_error(
+          fmt::format("'{}' is an SVG drawing, and this footlight was built without librsvg (convert it to PNG, or "
+                      "build with librsvg2-dev)",
+                      job.path));
   }
   return undecodable(job);
 }

@@ -17,13 +17,18 @@ namespace footlight::config {
 
 /// What `footlight-decode` is asked for; and in words, what may go wrong with it.
 struct DecodeJob {
-  std::string path;
-  bool video = true;
+  enum class Kind { video, image, painting, text, lamps };
+  std::string path;  ///< of a text: the text
+  Kind kind = Kind::video;
   int first = 0;
   std::optional<int> last;
   PictureOptions picture;
   MediaLimits limits;
   const std::atomic<bool>* stop = nullptr;
+  std::string font{};  ///< of a text
+
+  /// Whether it is one picture and no film of several.
+  [[nodiscard]] bool still() const { return kind != Kind::video && kind != Kind::lamps; }
 };
 
 /// The child has ended its stream by saying why it cannot go on.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// footlight-decode: turns a video or an image into thresholded pictures on standard output, for config/media.cpp, or a
-// film of lamps into the points of light of its frames, for config/lamp_film.cpp.
+// footlight-decode: turns a video, an image or a text into thresholded pictures on standard output and a painting into
+// colours, for config/media.cpp, or a film of lamps into the points of light of its frames, for config/lamp_film.cpp.
 // Codecs are large, old and written in C; a hostile file may kill this process and nothing else. It limits itself
 // before it touches the file: memory, processor time, no file may be written, few may be opened, only local files and
 // listed containers are read.
@@ -20,7 +20,6 @@
 #include <vector>
 
 #include <fcntl.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <sys/prctl.h>
@@ -29,6 +28,7 @@
 
 #include "config/decode_protocol.hpp"
 #include "config/decode_spots.hpp"
+#include "config/decode_still.hpp"
 #include "config/otsu.hpp"
 #include "core/film.hpp"
 
@@ -41,9 +41,10 @@ constexpr const char* kCaptureOptions =
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,ogg,gif,mpeg,mpegts";
 
 struct Request {
-  enum class Kind { video, image, lamps };
+  enum class Kind { video, image, painting, text, lamps };
   Kind kind = Kind::video;
-  std::string path;
+  std::string path;   ///< of a text: the text
+  std::string extra;  ///< of an image: its colours, "RRGGBBRRGGBB", or nothing; of a text: its font, or nothing
   long first = 0;
   long last = -1;       ///< -1: to the end
   long threshold = -1;  ///< -1: Otsu's; of lamps: radius of their light, in millionths of the frame's width
@@ -56,12 +57,14 @@ struct Request {
 };
 
 std::optional<Request> request_from(int argc, char** argv) {
-  if (argc != 11) return std::nullopt;
-  const std::string_view kind = argv[1];
-  if (kind != "video" && kind != "image" && kind != "lamps") return std::nullopt;
+  constexpr std::array<std::string_view, 5> kKinds{"video", "image", "painting", "text", "lamps"};
+  if (argc != 12) return std::nullopt;
+  const auto kind = std::find(kKinds.begin(), kKinds.end(), argv[1]);
+  if (kind == kKinds.end()) return std::nullopt;
   Request out;
-  out.kind = kind == "video" ? Request::Kind::video : kind == "image" ? Request::Kind::image : Request::Kind::lamps;
+  out.kind = static_cast<Request::Kind>(kind - kKinds.begin());
   out.path = argv[2];
+  out.extra = argv[11];
   long inverted = 0;
   const std::array<long*, 8> numbers{&out.first,      &out.last,       &out.threshold,   &inverted,
                                      &out.max_pixels, &out.max_frames, &out.max_seconds, &out.max_memory};
@@ -92,6 +95,10 @@ class Output {
   void send(const DecodeRecord& record, const Mask& picture) const {
     send(record);
     write_all(picture.words().data(), picture.words().size() * sizeof(std::uint64_t));
+  }
+  void send(const DecodeRecord& record, const std::vector<std::uint8_t>& rgb) const {
+    send(record);
+    write_all(rgb.data(), rgb.size());
   }
   void send(const DecodeRecord& record, const std::vector<LightSpot>& spots) const {
     send(record);
@@ -277,57 +284,47 @@ void decode_lamps(const Request& request, const Output& out) {
   out.end(range_status(reader, request), reader.taken());
 }
 
-/// Only formats with small, much tested readers; OpenCV alone would try a dozen more.
-bool is_listed_image(const std::string& path) {
-  std::array<char, 8> head{};
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const ssize_t size = fd < 0 ? -1 : read(fd, head.data(), head.size());
-  if (fd >= 0) close(fd);
-  const std::string_view magic(head.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size)));
-  const auto starts = [&](std::string_view with) { return magic.substr(0, with.size()) == with; };
-  return starts("\x89PNG\r\n\x1A\n") || starts("\xFF\xD8\xFF") || starts("BM") || starts("P1") || starts("P2") ||
-         starts("P4") || starts("P5");
-}
-
-/// Grey values on black: what is transparent is dark.
-cv::Mat grey_of(cv::Mat image) {
-  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
-  if (image.depth() != CV_8U) return {};
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  if (image.channels() == 3) {
-    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  } else if (image.channels() == 4) {
-    cv::cvtColor(image, grey, cv::COLOR_BGRA2GRAY);
-    cv::Mat alpha;
-    cv::extractChannel(image, alpha, 3);
-    cv::multiply(grey, alpha, grey, 1.0 / 255);
-  }
-  return grey;
-}
-
-void decode_image(const Request& request, const Output& out) {
-  if (!is_listed_image(request.path)) return out.end(DecodeStatus::undecodable);
-  const cv::Mat grey = grey_of(cv::imread(request.path, cv::IMREAD_UNCHANGED));
-  if (grey.empty()) return out.end(DecodeStatus::undecodable);
-  if (static_cast<long>(grey.cols) * grey.rows > request.max_pixels) {
-    return out.end(DecodeStatus::too_many_pixels, 0, grey.cols, grey.rows);
-  }
-  long threshold = request.threshold;
-  if (threshold < 0) {
-    GreyHistogram histogram{};
-    count_greys(grey, histogram);
-    threshold = otsu_threshold(histogram);
-  }
+/// What is said before the frame of a still.
+DecodeRecord film_of(const Still& still, long threshold) {
   DecodeRecord film;
   film.kind = DecodeRecord::Kind::film;
-  film.width = grey.cols;
-  film.height = grey.rows;
+  film.width = still.grey.cols;
+  film.height = still.grey.rows;
   film.threshold = static_cast<int>(threshold);
-  out.send(film);
+  return film;
+}
+
+Mask still_mask(const Request& request, const Still& still, long threshold) {
+  const auto colours = request.kind == Request::Kind::image ? colours_from(request.extra) : std::nullopt;
+  if (!colours) return picture_of(still.grey, threshold, request.inverted);
+  return picture_of(in_colours(still, *colours), 127, request.inverted);
+}
+
+void decode_still(const Request& request, const Output& out) {
+  const Still still =
+      request.kind == Request::Kind::text ? draw_text(request.path, request.extra) : read_still(request.path);
+  if (still.status != DecodeStatus::ok) return out.end(still.status, still.detail);
+  if (still.grey.empty()) return out.end(DecodeStatus::undecodable);
+  if (static_cast<long>(still.grey.cols) * still.grey.rows > request.max_pixels) {
+    return out.end(DecodeStatus::too_many_pixels, 0, still.grey.cols, still.grey.rows);
+  }
   DecodeRecord frame;
+  if (request.kind == Request::Kind::painting) {
+    out.send(film_of(still, 0));
+    frame.kind = DecodeRecord::Kind::painting;
+    out.send(frame, on_white(still));
+    return out.end(DecodeStatus::ok, 1);
+  }
+  long threshold = request.threshold;
+  if (threshold < 0 && still.drawing) threshold = 127;
+  if (threshold < 0) {
+    GreyHistogram histogram{};
+    count_greys(still.grey, histogram);
+    threshold = otsu_threshold(histogram);
+  }
+  out.send(film_of(still, threshold));
   frame.kind = DecodeRecord::Kind::frame;
-  out.send(frame, picture_of(grey, threshold, request.inverted));
+  out.send(frame, still_mask(request, still, threshold));
   out.end(DecodeStatus::ok, 1);
 }
 
@@ -342,14 +339,15 @@ int run(int argc, char** argv) {
   // The parent's death must not leave a decoder behind; without these limits nothing is decoded.
   const bool bounded = out.open() && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 &&
                        prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && limit(RLIMIT_CORE, 0) && limit(RLIMIT_FSIZE, 0) &&
-                       limit(RLIMIT_NOFILE, 32) && limit(RLIMIT_CPU, request->max_seconds) &&
-                       limit(RLIMIT_AS, request->max_memory) &&
+                       // Fontconfig would renew its caches: that it cannot is no reason to die.
+                       signal(SIGXFSZ, SIG_IGN) != SIG_ERR && limit(RLIMIT_NOFILE, 32) &&
+                       limit(RLIMIT_CPU, request->max_seconds) && limit(RLIMIT_AS, request->max_memory) &&
                        setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kCaptureOptions, 1) == 0;
   if (!bounded) return 3;
   try {
     if (request->kind == Request::Kind::video) decode_video(*request, out);
-    if (request->kind == Request::Kind::image) decode_image(*request, out);
     if (request->kind == Request::Kind::lamps) decode_lamps(*request, out);
+    if (request->kind != Request::Kind::video && request->kind != Request::Kind::lamps) decode_still(*request, out);
   } catch (const std::bad_alloc&) {
     out.end(DecodeStatus::too_much_memory);
   } catch (const cv::Exception& error) {

@@ -46,7 +46,10 @@ Result<std::string> find_program() {
 std::vector<std::string> bare_environment(int max_image_pixels) {
   std::vector<std::string> out{"LC_ALL=C", "OPENCV_LOG_LEVEL=SILENT",
                                "OPENCV_IO_MAX_IMAGE_PIXELS=" + std::to_string(max_image_pixels)};
-  if (const char* path = std::getenv("LD_LIBRARY_PATH")) out.push_back(std::string("LD_LIBRARY_PATH=") + path);
+  // Where libraries are, and people's fonts.
+  for (const char* name : {"LD_LIBRARY_PATH", "HOME", "XDG_DATA_HOME", "FONTCONFIG_FILE", "FONTCONFIG_PATH"}) {
+    if (const char* value = std::getenv(name)) out.push_back(std::string(name) + "=" + value);
+  }
   return out;
 }
 

@@ -26,7 +26,8 @@ std::vector<std::string> arguments_of(const DecodeJob& job, const SpotSearch& se
           std::to_string(job.limits.max_pixels),
           std::to_string(job.limits.max_frames),
           std::to_string(static_cast<long>(std::ceil(job.limits.max_seconds))),
-          std::to_string(job.limits.max_memory_bytes)};
+          std::to_string(job.limits.max_memory_bytes),
+          ""};
 }
 
 /// The child's stream, believed in nothing.
@@ -103,7 +104,7 @@ class LampReader {
 Result<LampFilm> decode_lamps(const std::string& path, const SpotSearch& search, const MediaLimits& limits,
                               const std::atomic<bool>* stop) {
   FL_CHECK(search.radius >= 0.0002 && search.radius <= 0.05 && search.most_spots >= 1 && search.most_spots <= 65'536);
-  const DecodeJob job{path, true, 0, std::nullopt, {}, limits, stop};
+  const DecodeJob job{path, DecodeJob::Kind::lamps, 0, std::nullopt, {}, limits, stop};
   if (auto there = is_file(path); !there) return there.error();
   auto process = DecoderProcess::start(arguments_of(job, search), limits.max_pixels);
   if (!process) return std::move(process).error();

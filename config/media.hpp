@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/film.hpp"
+#include "core/parts.hpp"
 #include "core/result.hpp"
 #include "core/show.hpp"
 
@@ -28,8 +29,24 @@ struct MediaLimits {
 /// Thread: reentrant. Hot path: no.
 [[nodiscard]] Result<Film> decode_video(const VideoSource& source, const MediaLimits& limits = {},
                                         const std::atomic<bool>* stop = nullptr);
-/// The same for one image (PNG, JPEG, BMP, PBM, PGM; what is transparent counts as dark): a film of one frame.
+/// The same for one image (PNG, JPEG, BMP, PBM, PGM; what is transparent counts as dark; or an SVG drawing, in which
+/// whatever is drawn is the picture): a film of one frame. A single picture has at most a minute.
 [[nodiscard]] Result<Film> decode_image(const ImageSource& source, const MediaLimits& limits = {},
                                         const std::atomic<bool>* stop = nullptr);
+
+/// A painting in colours (PNG, JPEG, BMP, SVG): Film::rgb and no frames.
+[[nodiscard]] Result<Film> decode_painting(const PaintingSource& source, const MediaLimits& limits = {},
+                                           const std::atomic<bool>* stop = nullptr);
+
+/// Which part could not be decoded, and why.
+struct PartFailure {
+  std::size_t part = 0;
+  Error error;
+};
+/// A frame for each part that is a picture or lettering, in their order, each at the upper left of a frame that is
+/// large enough for all. Lettering is laid out by Pango in the child, too. Errors, besides those of an image: no such
+/// font; a character that the font has not, named; an SVG drawing that refers to other files, which are not read.
+[[nodiscard]] Result<Film, PartFailure> decode_parts(const PartsSource& source, const MediaLimits& limits = {},
+                                                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace footlight::config

@@ -248,6 +248,8 @@ class PictureSection {
   }
 
   void describe(PlanSection& section) const {
+    section.reserve = show_.stage.reserve;
+    if (picture_options(section_).colour) return;  // a plan remembers pictures by their threshold
     FilmPlacement film;
     film.path = picture_path(section_);
     film.first_frame = film_.first_frame;
@@ -259,7 +261,6 @@ class PictureSection {
     film.inverted = film_.inverted;
     film.stage_to_frame = placement_.map;
     section.film = film;
-    section.reserve = show_.stage.reserve;
   }
 
   void fill_stations(SectionPlan& plan) const {

@@ -293,7 +293,7 @@ TEST(DecodeImage, RefusesWhatIsNoImageOfTheListedKinds) {
   const TemporaryFolder folder;
   const auto expected = [&](const std::string& path) {
     return "'" + path +
-           "' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM or PGM, of 1 to "
+           "' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM, PGM or SVG, of 1 to "
            "16777216 pixels)";
   };
   cv::imwrite(folder / "a.tiff", drawing(0));
