@@ -36,7 +36,7 @@ struct Led {
 /// On straight ways that swing to the side, at a speed that can be followed.
 Led random_crowd(Rng& rng, bool blocked) {
   Led led;
-  led.stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 24, 18, 1.0);
+  led.stage.grid = *Grid::make(static_cast<GridKind>(rng.below(3)), 20, 16, 1.0);
   if (blocked) {
     for (int i = 0; i < led.stage.grid.size(); ++i) {
       if (rng.below(25) == 0) led.stage.blocked.push_back(CellIndex::of(i));
@@ -50,7 +50,7 @@ Led random_crowd(Rng& rng, bool blocked) {
   const std::size_t people = 2 + rng.below(40);
   led.from = tests::random_cells(standable, people, rng);
   led.to = tests::random_cells(standable, people, rng);
-  const std::size_t instants = 14;
+  const std::size_t instants = 13;
   for (std::size_t k = 0; k < instants; ++k) {
     led.at_s.push_back(2.0 * static_cast<double>(k));
     if (k > 0) led.longest_m.push_back(2.8);
