@@ -2,8 +2,8 @@
 #include "planner/proof.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "planner/cell_order.hpp"
 #include "planner/parallel.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/validate.hpp"
@@ -45,17 +45,101 @@ Proof decoded(StageReader& reader) {
   return proof;
 }
 
-/// Where the marks of each instant are in a track; the same for everybody where a plan has no marks of one's own.
+/// Where the first mark at an instant or after it is in a track.
 std::size_t first_mark_at(const std::vector<Mark>& track, Instant instant) {
   const auto at = std::lower_bound(track.begin(), track.end(), instant,
                                    [](const Mark& mark, Instant time) { return mark.time < time; });
   return static_cast<std::size_t>(at - track.begin());
 }
 
+/// What people do from each stop to the next, hashed once: the facts of neighbouring transitions depend on the same
+/// marks. People go by the order of their cells at the stop, so that names do not matter; where they are at the end is
+/// part of it, so that pieces one after the other say who does what all along.
+class Pieces {
+ public:
+  Pieces(const Chain& chain, const Plan& plan) : chain_(chain), plan_(plan), people_(plan.tracks.size()) {
+    const auto zero = [](double value) { return value == 0; };
+    alike_ = std::all_of(plan.radius_m.begin(), plan.radius_m.end(), zero) &&
+             std::all_of(plan.max_speed_mps.begin(), plan.max_speed_mps.end(), zero);
+  }
+
+  /// @return false when stopped
+  bool hash(const Progress& progress) {
+    const std::size_t stops = chain_.stops.size();
+    first_.resize(stops * people_);
+    keys_.resize(stops);
+    return for_each_index(people_, "facts", progress, [&](std::size_t p) { find_marks(p); }) &&
+           for_each_index(stops, "facts", progress, [&](std::size_t k) { keys_[k] = key_of(k); });
+  }
+
+  [[nodiscard]] const StageKey& key(std::size_t stop) const { return keys_[stop]; }
+  /// Performers by the cells on which they stand at a stop.
+  [[nodiscard]] std::vector<std::uint32_t> order_at(std::size_t stop) const {
+    std::vector<CellIndex> cells(people_);
+    for (std::size_t p = 0; p < people_; ++p) cells[p] = cell_at(stop, p);
+    return order_by_cell(cells, plan_.stage.grid.size());
+  }
+
+ private:
+  [[nodiscard]] CellIndex cell_at(std::size_t stop, std::size_t p) const {
+    const std::vector<Mark>& track = plan_.tracks[p];
+    return track[std::min<std::size_t>(first_[stop * people_ + p], track.size() - 1)].cell;
+  }
+
+  void find_marks(std::size_t p) {
+    const std::vector<Mark>& track = plan_.tracks[p];
+    std::uint32_t mark = 0;
+    for (std::size_t k = 1; k < chain_.stops.size(); ++k) {
+      while (mark < track.size() && track[mark].time < chain_.stops[k].arrive) ++mark;
+      first_[k * people_ + p] = mark;
+    }
+  }
+
+  [[nodiscard]] StageKey key_of(std::size_t stop) const {
+    const bool last = stop + 1 == chain_.stops.size();
+    const std::vector<std::uint32_t> order = order_at(stop);
+    StageHash hash("piece");
+    std::vector<Duration::rep> times;
+    std::vector<Duration::rep> first_times;
+    std::vector<CellIndex> cells;
+    cells.reserve(3 * people_);
+    for (std::size_t n = 0; n < people_; ++n) {
+      const std::uint32_t p = order[n];
+      const std::vector<Mark>& track = plan_.tracks[p];
+      const std::size_t end = last ? track.size() : first_[(stop + 1) * people_ + p];
+      times.clear();
+      for (std::size_t m = first_[stop * people_ + p]; m < end; ++m) {
+        times.push_back(track[m].time.time_since_epoch().count());
+        cells.push_back(track[m].cell);
+      }
+      if (!last) cells.push_back(cell_at(stop + 1, p));
+      if (n == 0) first_times = times;
+      if (n == 0 || times != first_times) hash.add(n).list(times);
+      if (!alike_) hash.add(plan_.radius_m[p]).add(plan_.max_speed_mps[p]);
+    }
+    hash.list(cells);
+    const Instant from = chain_.stops[stop].arrive;
+    for (const Formation& formation : plan_.formations) {
+      if (formation.time < from || (!last && formation.time >= chain_.stops[stop + 1].arrive)) continue;
+      cells.clear();
+      for (const std::uint32_t p : order) cells.push_back(formation.cells[p]);
+      hash.add(formation.time.time_since_epoch().count()).list(cells);
+    }
+    return hash.key();
+  }
+
+  const Chain& chain_;
+  const Plan& plan_;
+  std::size_t people_;
+  bool alike_ = true;                 ///< nobody has a radius or a speed of her own
+  std::vector<std::uint32_t> first_;  ///< [stop][person]: of her first mark then or later
+  std::vector<StageKey> keys_;
+};
+
 class Prover {
  public:
   Prover(const Chain& chain, Plan& plan, Stages* stages, StageCount* count)
-      : chain_(chain), plan_(plan), stages_(stages), count_(count) {
+      : chain_(chain), plan_(plan), stages_(stages), count_(count), pieces_(chain, plan) {
     StageHash limits("limits");
     limits.add(plan.stage.grid.kind()).add(plan.stage.grid.columns()).add(plan.stage.grid.rows());
     limits.add(plan.stage.grid.pitch_m()).list(plan.stage.blocked);
@@ -71,15 +155,16 @@ class Prover {
       }
     }
     limits_ = limits.key();
-    alike_ = std::all_of(plan.radius_m.begin(), plan.radius_m.end(), [](double radius_m) { return radius_m == 0; }) &&
-             std::all_of(plan.max_speed_mps.begin(), plan.max_speed_mps.end(), [](double mps) { return mps == 0; });
   }
+
+  /// @return false when stopped
+  bool prepare(const Progress& progress) { return pieces_.hash(progress); }
 
   bool prove_one(std::size_t k) {
     const Window window = window_of(k);
-    const std::vector<std::uint32_t> order = people_by_cell(window.start);
+    const std::vector<std::uint32_t> order = pieces_.order_at(k);
     const Proof proof =
-        recall(stages_, key_of(k, window, order), count_, decoded, encoded, [&] { return look(k, window, order); });
+        recall(stages_, key_of(k, window), count_, decoded, encoded, [&] { return look(k, window, order); });
     TransitionFacts& facts = plan_.transitions[k];
     facts.start = chain_.stops[k].depart;
     facts.end = chain_.stops[k + 1].arrive;
@@ -97,67 +182,28 @@ class Prover {
  private:
   /// The marks on which a transition's facts depend.
   struct Window {
-    Instant start;   ///< everybody arrives at the stop from which the transition goes
-    Instant end;     ///< at the one to which it goes, or the end of the show
-    Instant beyond;  ///< at least so long after it as lateness is looked at
+    Instant start;         ///< everybody arrives at the stop from which the transition goes
+    Instant end;           ///< at the one to which it goes, or the end of the show
+    Instant beyond;        ///< at least so long after it as lateness is looked at
+    std::size_t last = 0;  ///< the stop at which it ends
   };
 
   [[nodiscard]] Window window_of(std::size_t k) const {
     const std::vector<Stop>& stops = chain_.stops;
-    Window window{k == 0 ? plan_.tracks.front().front().time : stops[k].arrive, stops[k + 1].arrive, {}};
-    std::size_t last = k + 1;
+    Window window{k == 0 ? plan_.tracks.front().front().time : stops[k].arrive, stops[k + 1].arrive, {}, k + 1};
+    std::size_t& last = window.last;
     while (last + 1 < stops.size() && stops[last].arrive < stops[k + 1].arrive + kLag) ++last;
     window.beyond = last + 1 == stops.size() ? stops[last].depart : stops[last].arrive;
     if (k + 2 == stops.size()) window.end = stops.back().depart;
     return window;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> people_by_cell(Instant instant) const {
-    std::vector<std::uint32_t> at(static_cast<std::size_t>(plan_.stage.grid.size()), kNobody);
-    for (std::uint32_t p = 0; p < plan_.tracks.size(); ++p) {
-      const auto& track = plan_.tracks[p];
-      at[track[first_mark_at(track, instant)].cell.at()] = p;
-    }
-    std::vector<std::uint32_t> order;
-    order.reserve(plan_.tracks.size());
-    for (const std::uint32_t p : at) {
-      if (p != kNobody) order.push_back(p);
-    }
-    if (order.size() == plan_.tracks.size()) return order;
-    order.resize(plan_.tracks.size());  // two on one cell: the judge will say so
-    std::iota(order.begin(), order.end(), 0U);
-    return order;
-  }
-
-  [[nodiscard]] StageKey key_of(std::size_t k, const Window& window, const std::vector<std::uint32_t>& order) const {
+  [[nodiscard]] StageKey key_of(std::size_t k, const Window& window) const {
     StageHash hash("facts");
     hash.add(limits_).add(chain_.legs[k].timing.empty()).add(window.start.time_since_epoch().count());
     hash.add(window.end.time_since_epoch().count()).add(window.beyond.time_since_epoch().count());
-    std::vector<Duration::rep> times;
-    std::vector<Duration::rep> first_times;
-    std::vector<CellIndex> cells;
-    cells.reserve(4 * order.size());
-    for (std::size_t n = 0; n < order.size(); ++n) {
-      const std::uint32_t p = order[n];
-      const auto& track = plan_.tracks[p];
-      times.clear();
-      for (std::size_t m = first_mark_at(track, window.start); m < track.size() && track[m].time <= window.beyond;
-           ++m) {
-        times.push_back(track[m].time.time_since_epoch().count());
-        cells.push_back(track[m].cell);
-      }
-      if (n == 0) first_times = times;
-      if (n == 0 || times != first_times) hash.add(n).list(times);
-    }
-    hash.list(cells);
-    if (!alike_) {
-      for (const std::uint32_t p : order) hash.add(plan_.radius_m[p]).add(plan_.max_speed_mps[p]);
-    }
-    for (const Formation& formation : formations_in(window)) {
-      cells.clear();
-      for (const std::uint32_t p : order) cells.push_back(formation.cells[p]);
-      hash.add(formation.time.time_since_epoch().count()).list(cells);
-    }
+    const bool to_the_end = window.last + 1 == chain_.stops.size();
+    for (std::size_t stop = k; stop < window.last + (to_the_end ? 1 : 0); ++stop) hash.add(pieces_.key(stop));
     return hash.key();
   }
 
@@ -229,13 +275,12 @@ class Prover {
     return proof;
   }
 
-  static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
   const Chain& chain_;
   Plan& plan_;
   Stages* stages_;
   StageCount* count_;
   StageKey limits_{};
-  bool alike_ = true;  ///< nobody has a radius or a speed of her own
+  Pieces pieces_;
 };
 
 }  // namespace
@@ -244,6 +289,7 @@ std::optional<bool> prove(const Chain& chain, Plan& plan, Stages* stages, StageC
   plan.transitions.resize(chain.legs.size());
   if (chain.legs.empty()) return validate(plan).valid();
   Prover prover(chain, plan, stages, count);
+  if (!prover.prepare(progress)) return std::nullopt;
   std::vector<char> sound(chain.legs.size(), 0);
   const bool done = for_each_index(chain.legs.size(), "facts", progress,
                                    [&](std::size_t k) { sound[k] = prover.prove_one(k) ? 1 : 0; });

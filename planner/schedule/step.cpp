@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "planner/cell_order.hpp"
 #include "planner/schedule/steps.hpp"
 
 namespace footlight::planner {
@@ -30,10 +31,8 @@ std::vector<T> taken(std::span<const T> from, const std::vector<std::uint32_t>& 
 /// A step with its slots in the order of the cells on which they are.
 class OrderedStep {
  public:
-  explicit OrderedStep(const StepTask& task) : task_(task), order_(task.snap.now.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    std::sort(order_.begin(), order_.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return task.snap.now[a] < task.snap.now[b]; });
+  explicit OrderedStep(const StepTask& task)
+      : task_(task), order_(order_by_cell(task.snap.now, task.snap.ways->grid().size())) {
     now_ = taken(task.snap.now, order_);
     own_ = taken(task.snap.own, order_);
     kind_ = taken(task.kind, order_);
