@@ -140,7 +140,11 @@ std::vector<MovingObstacle> read_obstacles(MappingReader& section) {
 
 const std::vector<MotionModel>& motion_models() {
   // A model adds one line.
-  static const std::vector<MotionModel> kModels{};
+  static const std::vector<MotionModel> kModels{
+      {"srd", PlannerModel::srd,
+       "Groups keep their formation on their way, give it up where they meet others, and find it again.", srd_listing,
+       read_srd},
+  };
   return kModels;
 }
 

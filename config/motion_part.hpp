@@ -24,6 +24,8 @@ struct MotionModel {
 
 // Of each model, in config/motion/NAME.cpp: `const Listing& NAME_listing()` and
 // `MotionOptions read_NAME(ShowReading& show, MappingReader reader)`.
+[[nodiscard]] const Listing& srd_listing();
+[[nodiscard]] MotionOptions read_srd(ShowReading& show, MappingReader reader);
 
 /// Keys of a section that go with a model of motion, beside `planner`; `paths`, `obstacles`, `marks` and `seed` in this
 /// order.

@@ -140,25 +140,34 @@ std::vector<Point> Ways::around(Point from, Point to) const {
   return way;
 }
 
-Ways::Step Ways::toward(Point from, Point to, double walked_m) const {
-  const double direct = distance(from, to);
-  if (straight(from, to)) return {direct <= walked_m ? to : from + walked_m / direct * (to - from), direct};
-  const std::vector<Point> way = around(from, to);
-  if (way.empty()) return {from, kFar};
-  Step step{from, 0};
-  double left = walked_m;
-  for (std::size_t at = 0; at + 1 < way.size();) {
+std::vector<Point> Ways::way(Point from, Point to) const {
+  if (straight(from, to)) return {from, to};
+  std::vector<Point> way = around(from, to);
+  std::size_t corners = 0;
+  for (std::size_t at = 0; at + 1 < way.size(); ++corners) {
     std::size_t next = way.size() - 1;  // as far as can be seen
     while (next > at + 1 && !straight(way[at], way[next])) --next;
-    const double piece = distance(way[at], way[next]);
+    way[corners + 1] = way[next];
+    at = next;
+  }
+  way.resize(way.empty() ? 0 : corners + 1);
+  return way;
+}
+
+Ways::Step Ways::toward(Point from, Point to, double walked_m) const {
+  const std::vector<Point> corners = way(from, to);
+  if (corners.empty()) return {from, kFar};
+  Step step{from, 0};
+  double left = walked_m;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const double piece = distance(corners[i - 1], corners[i]);
     if (left >= piece) {
-      step.at = way[next];
+      step.at = corners[i];
     } else if (left > 0) {
-      step.at = way[at] + left / piece * (way[next] - way[at]);
+      step.at = corners[i - 1] + left / piece * (corners[i] - corners[i - 1]);
     }
     left -= piece;
     step.length_m += piece;
-    at = next;
   }
   return step;
 }

@@ -42,6 +42,8 @@ class Ways {
     double length_m = 0;
   };
   [[nodiscard]] Step toward(Point from, Point to, double walked_m) const;
+  /// The corners of that way, `from` and `to` included; empty when there is none.
+  [[nodiscard]] std::vector<Point> way(Point from, Point to) const;
 
  private:
   [[nodiscard]] std::vector<Point> around(Point from, Point to) const;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planner/srd/srd_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/rng.hpp"
+#include "planner/srd/srd_step.hpp"
+
+namespace footlight::planner::srd {
+
+SrdModel::SrdModel(const MotionTask& task, const SrdOptions& options)
+    : task_(&task), options_(options), floor_(*task.floor) {}
+
+Result<SrdModel> SrdModel::make(const MotionTask& task, const SrdOptions& options) {
+  SrdModel model(task, options);
+  auto groups = divide(task, options, model.floor_);
+  if (!groups) return groups.error();
+  model.groups_ = std::move(*groups);
+  model.spread();
+  return model;
+}
+
+/// How people differ in agility and reaction.
+void SrdModel::spread() {
+  const std::size_t people = task_->people();
+  agility_.resize(people);
+  reaction_s_.resize(people);
+  const Rng rng(task_->seed);
+  for (std::size_t i = 0; i < people; ++i) {
+    Rng own = rng.split(i);
+    agility_[i] = options_.agility * (1 + options_.variation * (2 * own.uniform() - 1));
+    reaction_s_[i] = options_.reaction_s * (1 + options_.variation * (2 * own.uniform() - 1));
+    widest_m_ = std::max(widest_m_, task_->radius_m[i]);
+    fastest_mps_ = std::max(fastest_mps_, task_->speed_mps[i]);
+  }
+}
+
+SrdModel::State SrdModel::begin() const {
+  State state;
+  const std::size_t people = task_->people();
+  state.position = task_->from;
+  state.velocity.assign(people, {});
+  state.released.assign(people, options_.formation ? 0 : 1);
+  state.waited_s.assign(people, 0);
+  state.around.assign(people, 0);
+  state.corner.assign(people, {});
+  state.passed.assign(people, 1);
+  return state;
+}
+
+std::vector<Point> SrdModel::destinations(double at_s) const {
+  std::vector<Placing> places;
+  places.reserve(groups_.march.size());
+  for (const March& march : groups_.march) places.emplace_back(march.at(at_s));
+  std::vector<Point> out(groups_.of.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = floor_.free_place(places[static_cast<std::size_t>(groups_.of[i])](groups_.offsets[i]));
+  }
+  return out;
+}
+
+void SrdModel::step(const State& now, State& next) const { Step(*this, now, next).run(); }
+
+}  // namespace footlight::planner::srd
