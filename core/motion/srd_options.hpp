@@ -7,8 +7,8 @@ namespace footlight {
 
 /// Crowds that keep their formation by short range destinations (SRD) on position based dynamics.
 ///
-/// Source: J. H. Son, M. K. Sung, "Position-Based Formation Control Scheme for Crowds Using Short Range Distance (SRD)",
-/// Appl. Sci. 14 (8) 3386, 2024; symbols and equation numbers are the paper's. It prints no values for them.
+/// Source: J. H. Son, M. K. Sung, "Position-Based Formation Control Scheme for Crowds Using Short Range Distance
+/// (SRD)", Appl. Sci. 14 (8) 3386, 2024; symbols and equation numbers are the paper's. It prints no values for them.
 struct SrdOptions {
   /// How a formation lies along its path.
   enum class Orientation {

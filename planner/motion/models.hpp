@@ -16,7 +16,8 @@ namespace footlight::planner {
 /// @return positions at every instant of the task, the first those of `task.from`; nobody's way meets anything blocked
 /// @{
 [[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, std::monostate, const Progress& progress);
-[[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, const SrdOptions& options, const Progress& progress);
+[[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, const SrdOptions& options,
+                                            const Progress& progress);
 [[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, const SwarmOptions& options,
                                             const Progress& progress);
 /// @}

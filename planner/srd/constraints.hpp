@@ -60,35 +60,36 @@ struct Moving {
 /// What a collision to come asks of person i in this step: to the side alone, so that nobody is pushed back.
 ///
 /// Source: the long range collision constraint of Weiss, Litteneker, Jiang, Terzopoulos, "Position-Based Multi-Agent
-/// Dynamics for Real-Time Crowd Simulation", MIG 2017: the last free step t before the touch and the step after it, C =
-/// |x(t + dt)| - d there, stiffness k exp(-t^2 / tau_0), half of it each, and of the correction only what is tangential
-/// to the contact. Deviation: all of |C| goes to the tangential direction (as a projection it would vanish for two who
-/// walk straight at each other), and who has no side to choose passes on her right.
+/// Dynamics for Real-Time Crowd Simulation", MIG 2017: C = |x(t + dt)| - d < 0 a step after they touch at t, stiffness
+/// k exp(-t^2 / tau_0), half of it each, and of the correction only what is tangential to the contact. Deviations: t is
+/// not rounded down to whole steps, by which C of the same meeting would be anything from nothing to a step's way; all
+/// of |C| goes to the tangential direction (as a projection it would vanish for two who walk straight at each other);
+/// and who has no side to choose passes on her right.
 /// @param side share that is i's, as in `separation`
 [[nodiscard]] inline std::optional<Point> avoidance(Moving i, Moving j, double apart_m, double step_s, double horizon_s,
                                                     double k, double side = 0.5) {
   const auto touch = touch_s(i, j, apart_m);
   if (!touch || *touch > horizon_s) return std::nullopt;
-  const double free_s = step_s * std::floor(*touch / step_s);
   const Point x = i.at - j.at;
   const Point v = i.velocity - j.velocity;
-  const double depth_m = apart_m - length(x + (free_s + step_s) * v);
+  const double depth_m = apart_m - length(x + (*touch + step_s) * v);
   if (depth_m <= 0) return std::nullopt;
   const Point contact = x + *touch * v;
   // To the side on which i passes: across the contact, where the relative velocity leads.
   const Point across{-contact.y, contact.x};
   const double sideways = dot(across, v) / (apart_m * length(v));
   constexpr double kStraightAt = 1e-6;
-  const Point to = std::abs(sideways) > kStraightAt ? (sideways > 0 ? across : Point{-across.x, -across.y})
-                                                    : Point{v.y, -v.x};
-  return side * k * std::exp(-free_s * free_s / horizon_s) * depth_m / length(to) * to;
+  const Point to =
+      std::abs(sideways) > kStraightAt ? (sideways > 0 ? across : Point{-across.x, -across.y}) : Point{v.y, -v.x};
+  return side * k * std::exp(-*touch * *touch / horizon_s) * depth_m / length(to) * to;
 }
 
 /// Desired velocity toward a destination that moves itself: where it will be in `arrive_s`, no faster than kappa.
 ///
 ///   v_d = (s_c - p_c) / |s_c - p_c| kappa,  v_s = v_d - v_c                                          (10)
 /// Deviations: the paper prints p_c - s_c, which leads away; kappa is a limit and not constant, so that who has arrived
-/// does not run to and fro over her place (Reynolds, "Steering behaviors for autonomous characters", GDC 1999: arrival).
+/// does not run to and fro over her place (Reynolds, "Steering behaviors for autonomous characters", GDC 1999:
+/// arrival).
 [[nodiscard]] inline Point seek(Point person, Point destination, Point destination_velocity, double arrive_s,
                                 double kappa_mps) {
   return within(destination_velocity + 1 / arrive_s * (destination - person), kappa_mps);

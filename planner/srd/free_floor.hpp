@@ -36,9 +36,9 @@ class FreeFloor {
   void find_parts();
 
   const MotionFloor* floor_;
-  std::vector<float> free_m_;         ///< around each cell's centre, at most kFarthest_m
-  std::vector<CellIndex> place_;      ///< nearest cell to stand on
-  std::vector<std::uint32_t> part_;   ///< cells with equal numbers are connected
+  std::vector<float> free_m_;        ///< around each cell's centre, at most kFarthest_m
+  std::vector<CellIndex> place_;     ///< nearest cell to stand on
+  std::vector<std::uint32_t> part_;  ///< cells with equal numbers are connected
   double cell_radius_m_ = 0;
 };
 

@@ -125,8 +125,7 @@ class Division {
       if (distance(here, at) < 1e-9) continue;
       const auto way = floor_.floor().ways().way(here, at);
       if (way.empty()) {
-        return input_error(
-            fmt::format("there is no way around the blocked cells from {} to {}", told(here), told(at)));
+        return input_error(fmt::format("there is no way around the blocked cells from {} to {}", told(here), told(at)));
       }
       band.corners.insert(band.corners.end(), way.begin() + 1, way.end());
     }

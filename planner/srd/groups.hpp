@@ -14,8 +14,8 @@ namespace footlight::planner::srd {
 
 /// The groups of a crowd (Eq. 1), each with its march, and everybody's place in her group's formations.
 struct Groups {
-  std::vector<std::int32_t> of;    ///< of each person, into `march`
-  std::vector<Offsets> offsets;    ///< of each person, from the centre of her group
+  std::vector<std::int32_t> of;  ///< of each person, into `march`
+  std::vector<Offsets> offsets;  ///< of each person, from the centre of her group
   std::vector<March> march;
   std::vector<std::uint32_t> place_of;  ///< as Trajectory
 };
@@ -27,8 +27,8 @@ struct Groups {
 /// Who gets which place is the exact assignment of the least sum of squares of the two formations laid upon each other,
 /// within each group, so that a formation that is kept is not mixed; where places are nobody's, the one of the whole
 /// crowd, everybody moved with her group's path first.
-/// @return ErrorKind::input: places or points of a path that cannot be walked to, a group with more or fewer places than
-/// people, a way that takes too long. O(people log people) and the assignment
+/// @return ErrorKind::input: places or points of a path that cannot be walked to, a group with more or fewer places
+/// than people, a way that takes too long. O(people log people) and the assignment
 [[nodiscard]] Result<Groups> divide(const MotionTask& task, const SrdOptions& options, const FreeFloor& floor);
 
 }  // namespace footlight::planner::srd

@@ -49,8 +49,7 @@ std::vector<double> headings(const Line& line, std::size_t frames, double corner
   const double reach_m = std::max(corner_m, 1e-3);
   for (std::size_t k = 0; k < frames && length_m > 0; ++k) {
     const double walked_m = length_m * static_cast<double>(k) / static_cast<double>(frames - 1);
-    const Point chord =
-        line.at(std::min(length_m, walked_m + reach_m)) - line.at(std::max(0.0, walked_m - reach_m));
+    const Point chord = line.at(std::min(length_m, walked_m + reach_m)) - line.at(std::max(0.0, walked_m - reach_m));
     double angle = squared_length(chord) > 1e-12 ? std::atan2(chord.y, chord.x) : k > 0 ? out[k - 1] : 0;
     if (k > 0) angle = out[k - 1] + std::remainder(angle - out[k - 1], 2 * std::numbers::pi);
     out[k] = angle;
@@ -94,11 +93,12 @@ Result<March> March::plan(const Task& task, const SrdOptions& options) {
     whole_s = total(high_s) > whole_s ? low_s : high_s;
   }
   if (total(whole_s) > task.duration_s * (1 + 1e-9)) {
-    return input_error(fmt::format(
-        "a group's way of {:.1f} m from ({:.1f} m, {:.1f} m) to ({:.1f} m, {:.1f} m) takes at least {:.1f} s, and there "
-        "are {:.1f} s",
-        march.length_m_, task.corners.front().x, task.corners.front().y, task.corners.back().x, task.corners.back().y,
-        options.group_speed_mps ? total(whole_s) : shortest_s, task.duration_s));
+    return input_error(
+        fmt::format("a group's way of {:.1f} m from ({:.1f} m, {:.1f} m) to ({:.1f} m, {:.1f} m) takes at least {:.1f} "
+                    "s, and there "
+                    "are {:.1f} s",
+                    march.length_m_, task.corners.front().x, task.corners.front().y, task.corners.back().x,
+                    task.corners.back().y, options.group_speed_mps ? total(whole_s) : shortest_s, task.duration_s));
   }
   const double even_s = whole_s / static_cast<double>(least.size());
   march.at_s_.assign(1, 0);

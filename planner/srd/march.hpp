@@ -45,10 +45,10 @@ class Placing {
 class March {
  public:
   struct Task {
-    std::vector<Point> corners;         ///< way of the centre, the beginning and the goal included; at least one
-    std::vector<Offsets> offsets;       ///< of each person; turned as at the beginning and as at the goal
-    std::vector<double> speed_mps;      ///< of each person
-    double duration_s = 0;              ///< > 0
+    std::vector<Point> corners;     ///< way of the centre, the beginning and the goal included; at least one
+    std::vector<Offsets> offsets;   ///< of each person; turned as at the beginning and as at the goal
+    std::vector<double> speed_mps;  ///< of each person
+    double duration_s = 0;          ///< > 0
   };
 
   /// The centre walks along its corners at an even speed omega (Eq. 3, which it follows exactly: the group does not

@@ -25,8 +25,8 @@ Result<Trajectory> move_crowd(const MotionTask& task, const SrdOptions& options,
     return distance(out.at.back()[i++], place) > kLate_m;
   });
   if (late > 0) {
-    out.notes.push_back(fmt::format("{} of {} people are more than {:g} m from their places when the section ends", late,
-                                    task.people(), kLate_m));
+    out.notes.push_back(fmt::format("{} of {} people are more than {:g} m from their places when the section ends",
+                                    late, task.people(), kLate_m));
   }
   return out;
 }

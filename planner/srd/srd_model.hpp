@@ -24,12 +24,12 @@ namespace footlight::planner::srd {
 /// anything blocked, however few the iterations.
 class SrdModel {
  public:
-  struct State : Crowd {  // p_i, v_i
-    std::vector<char> released;           ///< one flag a person: out of the formation
-    std::vector<double> waited_s;         ///< of each person, that she sees a reason to change that
-    std::vector<char> around;             ///< one flag a person: goes to `corner`, for her destination is out of sight
+  struct State : Crowd {           // p_i, v_i
+    std::vector<char> released;    ///< one flag a person: out of the formation
+    std::vector<double> waited_s;  ///< of each person, that she sees a reason to change that
+    std::vector<char> around;      ///< one flag a person: goes to `corner`, for her destination is out of sight
     std::vector<Point> corner;
-    std::vector<std::uint32_t> passed;    ///< corners of her group's way, without formation
+    std::vector<std::uint32_t> passed;  ///< corners of her group's way, without formation
   };
 
   /// @param task must live as long as this  Errors: those of `divide`

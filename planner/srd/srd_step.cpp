@@ -109,8 +109,8 @@ void SrdModel::Step::plan_for_herself(std::size_t i) {
   for (std::size_t n = target; n + 1 < corners.size(); ++n) left_m += distance(corner(n), corner(n + 1));
   const double left_s = std::max(march.arrives_s() - (at_s_ - options_.step_s), options_.step_s);
   go_around(i);
-  destination_mps_[i] = within(1 / options_.step_s * (destination_[i] - now_.position[i]),
-                               std::min(task_.speed_mps[i], left_m / left_s));
+  destination_mps_[i] =
+      within(1 / options_.step_s * (destination_[i] - now_.position[i]), std::min(task_.speed_mps[i], left_m / left_s));
 }
 
 /// Who does not see her destination goes to the next corner of the way there, as fast as she can.
@@ -119,8 +119,8 @@ void SrdModel::Step::go_around(std::size_t i) {
   const Point here = now_.position[i];
   next_.around[i] = model_.floor_.sees(here, destination_[i]) ? 0 : 1;
   if (next_.around[i] == 0) return;
-  const bool keeps = now_.around[i] != 0 && distance(here, now_.corner[i]) > kReached_m &&
-                     model_.floor_.sees(here, now_.corner[i]);
+  const bool keeps =
+      now_.around[i] != 0 && distance(here, now_.corner[i]) > kReached_m && model_.floor_.sees(here, now_.corner[i]);
   if (!keeps) next_.corner[i] = model_.floor_.first_corner(here, destination_[i]);
   destination_[i] = next_.corner[i];
   destination_mps_[i] = within(1 / options_.step_s * (destination_[i] - here), task_.speed_mps[i]);

@@ -10,8 +10,8 @@
 
 namespace footlight::planner::srd {
 
-/// One step of the model, in the order of Algorithm 1; holds what lives no longer than that. Each stage runs over people
-/// in parallel and writes what belongs to each person alone.
+/// One step of the model, in the order of Algorithm 1; holds what lives no longer than that. Each stage runs over
+/// people in parallel and writes what belongs to each person alone.
 class SrdModel::Step {
  public:
   Step(const SrdModel& model, const State& now, State& next);
@@ -21,10 +21,10 @@ class SrdModel::Step {
   void plan();             ///< lines 2-7
   void find_congestion();  ///< lines 8-9 and 11: who keeps the formation
   void find_neighbours();
-  void avoid();    ///< line 12: collisions to come
-  void solve();    ///< lines 12-18
-  void guard();    ///< nobody in anybody or anything
-  void move();     ///< lines 19-23
+  void avoid();  ///< line 12: collisions to come
+  void solve();  ///< lines 12-18
+  void guard();  ///< nobody in anybody or anything
+  void move();   ///< lines 19-23
 
   void plan_in_formation(std::size_t i, Point destination, Point velocity);
   void plan_for_herself(std::size_t i);
@@ -47,10 +47,10 @@ class SrdModel::Step {
   State& next_;
   double at_s_;  ///< at the end of the step
   std::vector<MotionFloor::Disc> discs_;
-  std::vector<Point> destination_;          ///< where each person wants to be at the end of the step
-  std::vector<Point> destination_mps_;      ///< how that moves
-  std::vector<Point> predicted_;            ///< p*
-  std::vector<Point> other_;                ///< the next p*, while it is worked out
+  std::vector<Point> destination_;      ///< where each person wants to be at the end of the step
+  std::vector<Point> destination_mps_;  ///< how that moves
+  std::vector<Point> predicted_;        ///< p*
+  std::vector<Point> other_;            ///< the next p*, while it is worked out
   Neighbours crowd_;
   struct Chunk {
     std::vector<std::uint32_t> begin;  ///< of each of its people in `near`; one more

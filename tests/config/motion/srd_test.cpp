@@ -89,11 +89,12 @@ TEST_F(SrdSection, ReadsEveryKey) {
 
 TEST_F(SrdSection, SaysWhatIsWrong) {
   const std::string key = "error: sections[1].planner.srd";
-  EXPECT_EQ(errors("{model: srd, srd: {reaction: 0.3}}"),
-            "show.yaml:11:43: " + key + ".reaction: \"0.3\" has no unit (write for example \"3.2 s\"; units: s, ms, min)\n");
-  EXPECT_EQ(errors("{model: srd, srd: {orientation: round}}"),
-            "show.yaml:11:46: " + key +
-                ".orientation: \"round\" is not one of the choices (choices: fixed, path, wheel)\n");
+  EXPECT_EQ(
+      errors("{model: srd, srd: {reaction: 0.3}}"),
+      "show.yaml:11:43: " + key + ".reaction: \"0.3\" has no unit (write for example \"3.2 s\"; units: s, ms, min)\n");
+  EXPECT_EQ(
+      errors("{model: srd, srd: {orientation: round}}"),
+      "show.yaml:11:46: " + key + ".orientation: \"round\" is not one of the choices (choices: fixed, path, wheel)\n");
   EXPECT_EQ(errors("{model: srd, srd: {settle: 1}}"),
             "show.yaml:11:41: " + key + ".settle: \"1\" is out of range (0 to 0.9)\n");
   EXPECT_EQ(errors("{model: srd, srd: {iterations: 0}}"),

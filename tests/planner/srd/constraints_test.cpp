@@ -61,8 +61,8 @@ TEST(Avoidance, OfTwoWhoWalkStraightAtEachOtherBothPassOnTheirRight) {
   const auto of_i = avoidance(i, j, 1, 0.4, 5, 0.5);
   const auto of_j = avoidance(j, i, 1, 0.4, 5, 0.5);
   ASSERT_TRUE(of_i && of_j);
-  // The last free step of 0.4 s ends at 4.4 s, the next at 4.8 s: 0.4 m apart, C = 0.6 m.
-  const double expected_m = 0.5 * 0.5 * std::exp(-4.4 * 4.4 / 5) * 0.6;
+  // They touch after 4.5 s, a step of 0.4 s later they are 0.2 m apart: C = 0.8 m.
+  const double expected_m = 0.5 * 0.5 * std::exp(-4.5 * 4.5 / 5) * 0.8;
   EXPECT_NEAR(of_i->x, 0, 1e-12);
   EXPECT_NEAR(of_i->y, -expected_m, 1e-12);
   EXPECT_NEAR(of_j->x, 0, 1e-12);
@@ -73,9 +73,9 @@ TEST(Avoidance, WhoWouldPassOnOneSideGoesFartherToThatSide) {
   // The other is to my left: I go to the right, and a little forward, across the contact.
   const auto one = avoidance({{0, 0}, {1, 0}}, {{10, 0.6}, {0, 0}}, 1, 1, 20, 1, 1);
   ASSERT_TRUE(one);
-  // Contact at 9.2 s: i is at (9.2, 0), the other at (-0.8, -0.6) from there; across it (0.6, -0.8). One step on from
-  // the free 9 s: (0, -0.6) apart, C = 0.4 m.
-  const double expected_m = std::exp(-81.0 / 20) * 0.4;
+  // Contact at 9.2 s: i is at (9.2, 0), (-0.8, -0.6) from the other; across that (0.6, -0.8). A second later she is
+  // (0.2, -0.6) from the other.
+  const double expected_m = std::exp(-9.2 * 9.2 / 20) * (1 - std::sqrt(0.4));
   EXPECT_NEAR(one->x, 0.6 * expected_m, 1e-12);
   EXPECT_NEAR(one->y, -0.8 * expected_m, 1e-12);
 }
@@ -91,8 +91,8 @@ TEST(Seek, LeadsToTheDestinationAndSlowsDownThere) {
   const Point far = seek({0, 0}, {30, 40}, {0, 0}, 1, 1.5);  // as fast as she can
   EXPECT_NEAR(far.x, 0.9, 1e-12);
   EXPECT_NEAR(far.y, 1.2, 1e-12);
-  EXPECT_EQ(seek({0, 0}, {0.3, 0}, {0, 0}, 1, 1.5), (Point{0.3, 0}));    // to be there in a second
-  EXPECT_EQ(seek({2, 2}, {2, 2}, {0.7, 0}, 1, 1.5), (Point{0.7, 0}));    // with it, once there
+  EXPECT_EQ(seek({0, 0}, {0.3, 0}, {0, 0}, 1, 1.5), (Point{0.3, 0}));  // to be there in a second
+  EXPECT_EQ(seek({2, 2}, {2, 2}, {0.7, 0}, 1, 1.5), (Point{0.7, 0}));  // with it, once there
 }
 
 }  // namespace

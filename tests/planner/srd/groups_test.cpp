@@ -125,7 +125,8 @@ TEST(SrdGroups, SayWhatCannotBe) {
 
   std::vector<Cell> ring;
   for (int i = 0; i < 5; ++i) {
-    for (const Cell cell : {Cell{40 + i, 10}, Cell{40 + i, 14}, Cell{40, 10 + i}, Cell{44, 10 + i}}) ring.push_back(cell);
+    for (const Cell cell : {Cell{40 + i, 10}, Cell{40 + i, 14}, Cell{40, 10 + i}, Cell{44, 10 + i}})
+      ring.push_back(cell);
   }
   std::sort(ring.begin(), ring.end());
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());

@@ -107,7 +107,8 @@ TEST(March, RigidFormationKeepsItsDistancesWhileItWheels) {
 
 TEST(March, ChangesFormationUnderWay) {
   const Offsets offsets{{-2, 0}, {2, 0}};
-  const auto march = March::plan({{{0, 0}, {10, 0}}, {offsets}, {1.4}, 20}, options_with(SrdOptions::Orientation::fixed));
+  const auto march =
+      March::plan({{{0, 0}, {10, 0}}, {offsets}, {1.4}, 20}, options_with(SrdOptions::Orientation::fixed));
   ASSERT_TRUE(march);
   EXPECT_NEAR(distance(Placing(march->at(0))(offsets), {-2, 0}), 0, 1e-9);
   EXPECT_NEAR(distance(Placing(march->at(10))(offsets), {5, 0}), 0, 1e-6);

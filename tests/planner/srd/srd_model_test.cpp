@@ -163,6 +163,7 @@ TEST(SrdModel, MoreAgilePeopleStepAsideMore) {
     add_group(task, 1, {{15, 20}}, {{-15, 20}});
     SrdOptions options;
     options.agility = agility;
+    options.variation = 0;  // both see each other at the same time
     double aside = 0;
     run(model_of(task, options), task, [&](const auto&, const auto& next) {
       if (aside == 0) aside = 20 - next.position[0].y;  // to the right of her way
@@ -225,9 +226,8 @@ TEST(SrdModel, ChangesFormationOnTheWay) {
   MotionTask task = task_on(floor, 60);
   add_group(task, 0, block({-25, 10}, 12, 3), block({20, 8}, 3, 12));
   const SrdModel model = model_of(task);
-  const auto end = run(model, task, [&](const auto&, const auto& next) {
-    EXPECT_GE(nearest_m(next.position), 0.5 - kRounding_m);
-  });
+  const auto end =
+      run(model, task, [&](const auto&, const auto& next) { EXPECT_GE(nearest_m(next.position), 0.5 - kRounding_m); });
   for (std::size_t i = 0; i < task.people(); ++i) {
     EXPECT_NEAR(distance(end.position[i], task.to[model.place_of()[i]]), 0, 0.01);
   }
@@ -307,8 +307,7 @@ TEST(SrdModel, NeverComesNearerThanTheRadiiWhateverMeets) {
     run(model, task, [&](const auto&, const auto& next) {
       for (std::size_t i = 0; i < people; ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-          RC_ASSERT(distance(next.position[i], next.position[j]) >=
-                    task.radius_m[i] + task.radius_m[j] - kRounding_m);
+          RC_ASSERT(distance(next.position[i], next.position[j]) >= task.radius_m[i] + task.radius_m[j] - kRounding_m);
         }
       }
     });
