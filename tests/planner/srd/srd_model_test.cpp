@@ -163,10 +163,9 @@ TEST(SrdModel, MoreAgilePeopleStepAsideMore) {
     add_group(task, 1, {{15, 20}}, {{-15, 20}});
     SrdOptions options;
     options.agility = agility;
-    options.variation = 0;  // both see each other at the same time
     double aside = 0;
     run(model_of(task, options), task, [&](const auto&, const auto& next) {
-      if (aside == 0) aside = 20 - next.position[0].y;  // to the right of her way
+      if (aside == 0) aside = (20 - next.position[0].y) + (next.position[1].y - 20);  // to the right of their ways
     });
     return aside;
   };
