@@ -33,6 +33,28 @@ const Listing& grid_listing() {
   return kListing;
 }
 
+const Listing& obstacle_listing() {
+  static const Listing kListing{
+      "stage.obstacles[]",
+      "Something that stands on the floor: every cell into which it reaches is blocked.",
+      {
+          {.key = "polygon",
+           .type = Type::polygon,
+           .doc = "Its corners in order, to stage left of the centre line and upstage of the edge.",
+           .range = {-10'000, 10'000}},
+          {.key = "map",
+           .type = Type::file,
+           .doc = "A grey map of the floor (PNG, JPEG, BMP, PBM, PGM) from edge to edge, upstage at its top: what is "
+                  "dark is in the way."},
+          {.key = "threshold",
+           .type = Type::threshold,
+           .doc = "Of a map: pixels as dark as this are in the way; `otsu` finds a value.",
+           .fallback = "otsu"},
+      },
+      "polygon map"};
+  return kListing;
+}
+
 const Listing& stage_listing() {
   static const Listing kListing{
       "stage",
@@ -43,6 +65,12 @@ const Listing& stage_listing() {
            .type = Type::cells,
            .doc = "Set pieces, pits: nobody stands or walks here, no lamp.",
            .otherwise = "none",
+           .list = true},
+          {.key = "obstacles",
+           .type = Type::mapping,
+           .doc = "The same by their outlines, in metres, or from a map.",
+           .otherwise = "none",
+           .listing = &obstacle_listing(),
            .list = true},
           {.key = "reserve",
            .type = Type::cells,

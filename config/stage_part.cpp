@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <iterator>
 
+#include "config/media.hpp"
 #include "config/nearest.hpp"
+#include "config/obstacles.hpp"
 #include "config/show_parts.hpp"
 
 namespace footlight::config {
@@ -18,6 +21,54 @@ std::optional<Grid> read_grid(MappingReader grid) {
   grid.error(grid.position(), grid.path(),
              std::to_string(*columns) + " x " + std::to_string(*rows) + " cells are too many", made.error().message);
   return std::nullopt;
+}
+
+/// The map's dark pixels, as drawn by the child process.
+std::optional<Mask> read_map(ShowReading& show, MappingReader& obstacle) {
+  PictureOptions options;
+  options.invert = true;
+  const auto threshold = obstacle.written("threshold");
+  if (threshold && threshold->text != "otsu") {
+    options.threshold = parse_integer(threshold->text);
+    if (!options.threshold || *options.threshold < 0 || *options.threshold > 255) {
+      obstacle.error(*threshold, in_quotes(threshold->text) + " is not a threshold", "0 to 255, or otsu");
+      return std::nullopt;
+    }
+  }
+  const std::string file = existing_file(obstacle, "map", show.folder, show.loaded.files);
+  if (file.empty()) return std::nullopt;
+  auto film = decode_image({file, options});
+  if (film) return std::move(film->frames.front());
+  obstacle.error("map", film.error().message);
+  return std::nullopt;
+}
+
+/// Cells of all obstacles, ascending.
+std::vector<CellIndex> read_obstacles(ShowReading& show, MappingReader& stage, const Grid& grid) {
+  std::vector<CellIndex> out;
+  for (MappingReader& obstacle : stage.mappings("obstacles")) {
+    std::vector<CellIndex> cells;
+    if (obstacle.has("map")) {
+      const auto map = read_map(show, obstacle);
+      if (!map) continue;
+      cells = cells_of_map(grid, *map);
+      if (cells.empty())
+        obstacle.error("map", "nothing in the map is in the way", "dark pixels are; another threshold");
+    } else {
+      if (obstacle.has("threshold")) refuse_keys(obstacle, {"threshold"}, "it goes with a map");
+      const std::vector<Point> corners = obstacle.polygon("polygon");
+      if (corners.empty()) continue;
+      cells = cells_of_polygon(grid, corners);
+      if (cells.empty()) {
+        obstacle.error("polygon", "it reaches into no cell of the stage",
+                       "x from stage right to stage left with 0 in the middle, y upstage from 0 at the edge");
+      }
+    }
+    out.insert(out.end(), cells.begin(), cells.end());
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 /// Whoever is blocked and in reserve at once is reported with the cells' names.
@@ -81,7 +132,9 @@ void read_stage(ShowReading& show, MappingReader stage) {
   if (auto grid = stage.mapping("grid")) {
     if (const auto made = read_grid(std::move(*grid))) {
       out.grid = *made;
-      out.blocked = read_cells(stage, "blocked", out.grid);
+      const auto cells = read_cells(stage, "blocked", out.grid);
+      const auto obstacles = read_obstacles(show, stage, out.grid);
+      std::set_union(cells.begin(), cells.end(), obstacles.begin(), obstacles.end(), std::back_inserter(out.blocked));
       out.reserve = read_cells(stage, "reserve", out.grid);
       check_disjoint(stage, out);
       show.has_stage = true;

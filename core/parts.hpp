@@ -38,7 +38,7 @@ struct Lettering {
   std::string text;
   std::string font;  ///< as Pango names it: "Noto Sans CJK SC Bold"
 };
-/// The corners of a body, seen from one side (Son, Sung 2024, section 4.2, Figure 5).
+/// The corners of a body, seen from one side (Son, Sung 2024, section 3.2.2, Figure 5).
 struct Mesh {
   enum class View { top, front, side };
   std::string path;  ///< as resolved against the show file's folder

@@ -37,7 +37,15 @@ struct PartError {
   std::string hint;
 };
 
+/// Where the people of a shape (shapes.hpp), of a picture or lettering (relax.hpp: on cells with picture in them), or
+/// of a mesh are: its corners seen from one side (Son, Sung 2024, section 3.2.2), thinned to what neighbours need and
+/// then to exactly the people (spread.hpp). Errors: a picture with nothing in it; a mesh with fewer corners than
+/// people.
 [[nodiscard]] Result<PartPoints, PartError> part_points(const PartTask& task);
+
+/// The corners as seen: from above with the front downstage, from the front, or from its side at stage left, in the
+/// mesh's own unit.
+[[nodiscard]] std::vector<Point> projected(const Mesh& mesh);
 
 /// For messages: "the circle", "the picture 'dove.svg'".
 [[nodiscard]] std::string part_name(const Part& part);

@@ -7,8 +7,8 @@
 namespace footlight::planner {
 namespace {
 
-/// Most drawings are content with the first.
-constexpr std::array kReaches{1.6, 3.2, Seats::kReach};
+/// Most drawings are content with the first; a picture's people may go farther within the picture.
+constexpr std::array kReaches{1.6, 3.2, Seats::kReach, 4 * Seats::kReach};
 
 }  // namespace
 
@@ -32,7 +32,7 @@ bool Seats::choose(const std::vector<Point>& points, const CellFlags& only, doub
 
 bool Seats::add(const std::vector<Point>& points, const CellFlags& only) {
   const auto found = [&](double reach) { return choose(points, only, reach) && places_.seat_all(); };
-  if (std::none_of(kReaches.begin(), kReaches.end(), found)) return false;
+  if (std::none_of(kReaches.begin(), kReaches.end() - (only.empty() ? 1 : 0), found)) return false;
   seated_ += static_cast<std::uint32_t>(points.size());
   return true;
 }

@@ -19,12 +19,13 @@ class Seats {
   Seats(const Grid& grid, const CellFlags& usable, std::size_t people);
 
   /// @param only cells that it may take, one flag a cell; empty: any usable ones
-  /// @return false: some have no cell within `kReach` pitches beside all others
+  /// @return false: some have no cell within reach beside all others
   [[nodiscard]] bool add(const std::vector<Point>& points, const CellFlags& only = {});
   /// Of every point that was added, in order. After the last `add`, none of which failed.
   [[nodiscard]] std::vector<CellIndex> cells() const;
 
-  /// Nobody is sent farther from where the drawing wants somebody, pitches.
+  /// Nobody is sent farther from where the drawing wants somebody, pitches; four times as far among cells that are
+  /// given.
   static constexpr double kReach = 6.4;
 
  private:

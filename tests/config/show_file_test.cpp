@@ -237,10 +237,11 @@ TEST_F(ShowFile, TakesAVideoWithoutDurationAsItsOwnLength) {
 }
 
 TEST_F(ShowFile, NamesTheNearestKnownKey) {
-  EXPECT_EQ(errors_of_stage("{grid: {columns: 4, rows: 3}, clearence: 1 m, colour: x}"),
-            "show.yaml:3:38: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n"
-            "show.yaml:3:54: error: stage.colour: unknown key (known keys: grid, blocked, reserve, clearance, "
-            "max_speed, lag)\n");
+  EXPECT_EQ(
+      errors_of_stage("{grid: {columns: 4, rows: 3}, clearence: 1 m, colour: x}"),
+      "show.yaml:3:38: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n"
+      "show.yaml:3:54: error: stage.colour: unknown key (known keys: grid, blocked, obstacles, reserve, clearance, "
+      "max_speed, lag)\n");
 }
 
 TEST_F(ShowFile, SaysWhereAKeyIsMissing) {
@@ -269,7 +270,8 @@ TEST_F(ShowFile, WantsAllKindsOfValuesWhereTheyBelong) {
       errors("footlight: 2\ntitle: \"\"\nstage: big\nperformers: [x]\nmusic:\nsections: {}\n"),
       "show.yaml:1:12: error: footlight: \"2\" is out of range (1)\n"
       "show.yaml:2:8: error: title: the text is empty (write one, or leave the key out)\n"
-      "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, reserve, "
+      "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, obstacles, "
+      "reserve, "
       "clearance, max_speed, lag)\n"
       "show.yaml:4:13: error: performers: a list stands where a mapping belongs (keys: count, from, groups, "
       "understudies, colour)\n"
