@@ -48,6 +48,20 @@ std::optional<double> longest_to_median(const planner::Measures& m) {
   return m.longest_distance_m / m.median_distance_m;
 }
 
+Json crowd_json(const std::optional<planner::CrowdFigures>& crowd, const planner::InformationClasses& classes) {
+  if (!crowd) return {};
+  return {{"R_m", classes.bin_m},
+          {"K", classes.sectors},
+          {"N", crowd->moving},
+          {"instants", crowd->instants},
+          {"I_d_bits", number(crowd->direction_bits)},
+          {"I_d_shuffled_bits", number(crowd->shuffled_direction_bits)},
+          {"I_v_bits", number(crowd->speed_bits)},
+          {"I_v_shuffled_bits", number(crowd->shuffled_speed_bits)},
+          {"sigma_min_dis_m", number(crowd->sigma_nearest_m)},
+          {"sigma_curr_eft_m", number(crowd->sigma_effort_m)}};
+}
+
 bool has_pair(const Plan& plan, const planner::Measures& m) {
   return std::isfinite(m.min_clearance_m) && m.closest_a != m.closest_b && m.closest_b.at() < plan.performers.size();
 }
@@ -125,13 +139,29 @@ Row way_row(const std::string& name, std::size_t people, const planner::Measures
           fmt::format("{:.1f}", m.marks_per_minute)};
 }
 
-/// The three tables, row by row.
+Row crowd_row(const std::string& name, const std::optional<planner::CrowdFigures>& crowd) {
+  if (!crowd) return {name, "-", "-", "-", "-", "-", "-", "-"};
+  const auto bits = [](double value) { return fmt::format("{:.3f}", value); };
+  // One person has no nearest neighbour.
+  const bool alone = !std::isfinite(crowd->sigma_nearest_m);
+  return {name,
+          fmt::format("{:.0f}", crowd->moving),
+          bits(crowd->direction_bits),
+          bits(crowd->shuffled_direction_bits),
+          bits(crowd->speed_bits),
+          bits(crowd->shuffled_speed_bits),
+          alone ? "-" : fmt::format("{:.3f} m", crowd->sigma_nearest_m),
+          fmt::format("{:.2f} m", crowd->sigma_effort_m)};
+}
+
+/// The four tables, row by row.
 class Tables {
  public:
   Tables(const std::string& first, const std::string& asked_lag, bool planning)
       : drawing_({first, "formations", "frames", "theta_dev", "variance", "theta_miss", "theta_iou"}),
         clearance_({first, "clearance", "between", "at", "too close", "fastest", asked_lag, "least"}),
         ways_(way_headings(first, planning)),
+        crowd_({first, "walking", "I_d", "by chance", "I_v", "by chance", "sigma_min_dis", "sigma_curr_eft"}),
         planning_(planning) {}
 
   void add(const std::string& name, const MeasuredPlan& measured, std::optional<std::size_t> section) {
@@ -149,9 +179,10 @@ class Tables {
     Row way = way_row(name, measured.plan.tracks.size(), m);
     if (planning_) way.push_back(measured.planning_s ? fmt::format("{:.2f} s", *measured.planning_s) : "-");
     ways_.add(std::move(way));
+    crowd_.add(crowd_row(name, m.crowd));
   }
   [[nodiscard]] std::string to_text() const {
-    return drawing_.to_text() + "\n" + clearance_.to_text() + "\n" + ways_.to_text();
+    return drawing_.to_text() + "\n" + clearance_.to_text() + "\n" + ways_.to_text() + "\n" + crowd_.to_text();
   }
 
  private:
@@ -164,6 +195,7 @@ class Tables {
   TextTable drawing_;
   TextTable clearance_;
   TextTable ways_;
+  TextTable crowd_;
   bool planning_;
 };
 
@@ -177,6 +209,7 @@ Json plan_json(const MeasuredPlan& measured) {
            {"lag_s", to_seconds(plan.stage.lag)},
            {"planning_s", number(measured.planning_s)}};
   out.update(figures(plan, measured.measures.show, lag_of(measured, std::nullopt)));
+  out["crowd"] = crowd_json(measured.measures.show.crowd, measured.measures.crowd_classes);
   const planner::ManualWork work = planner::manual_work(plan);
   out["mwskf"] = work.formations_share();
   out["mwpft"] = work.transitions_share();
@@ -184,6 +217,7 @@ Json plan_json(const MeasuredPlan& measured) {
   for (std::size_t i = 0; i < measured.measures.sections.size() && i < plan.sections.size(); ++i) {
     Json section{{"name", plan.sections[i].name}};
     section.update(figures(plan, measured.measures.sections[i], lag_of(measured, i)));
+    section["crowd"] = crowd_json(measured.measures.sections[i].crowd, measured.measures.crowd_classes);
     if (i < measured.bests.size() && measured.bests[i]) {
       const planner::SingleFigures& best = *measured.bests[i];
       section["best"] = {{"theta_dev", best.theta_dev}, {"theta_miss", best.theta_miss}, {"theta_iou", best.theta_iou}};

@@ -29,8 +29,8 @@ struct MeasuredPlan {
   std::optional<double> planning_s;  ///< absent when the plan came from a file
 };
 
-/// Three tables, of the drawing, of clearances and of ways, with a line for each section and one for the show; of
-/// several plans with a line for each plan instead.
+/// Four tables, of the drawing, of clearances, of ways and of how the crowd moves, with a line for each section and one
+/// for the show; of several plans with a line for each plan instead.
 /// @param plans at least one
 [[nodiscard]] std::string measure_text(const std::vector<MeasuredPlan>& plans);
 /// The same for programs; figures that do not exist are null (no film, one performer). One plan is an object, several

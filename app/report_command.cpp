@@ -66,7 +66,7 @@ ReportFacts facts_of(Session& session, const PlannedShow& planned) {
   out.drawing = drawing_series(plan, *planned.films);
   out.clearance = clearance_series(plan, kStep_s);
   session.tell("crowd", 0);
-  out.crowd = crowd_series(plan, kStep_s);
+  out.crowd = planner::crowd_series(plan, kStep_s);
   out.ways = way_figures(plan);
   session.tell("buses", 0);
   if (plan.valid) {

@@ -42,6 +42,24 @@ Json clearance_of(const Plan& plan, const ClearanceSeries& series) {
   return {{"time_s", series.time_s}, {"least_m", series.least_m}, {"performers", pairs}, {"at_s", series.at_s}};
 }
 
+Json crowd_of(const planner::CrowdSeries& crowd) {
+  Json out{{"R_m", crowd.classes.bin_m}, {"K", crowd.classes.sectors}, {"time_s", crowd.time_s}};
+  for (const char* key :
+       {"N", "I_d_bits", "I_v_bits", "I_d_shuffled_bits", "I_v_shuffled_bits", "sigma_min_dis_m", "sigma_curr_eft_m"}) {
+    out[key] = Json::array();
+  }
+  for (const planner::CrowdInstant& at : crowd.at) {
+    out["N"].push_back(at.information.moving);
+    out["I_d_bits"].push_back(at.information.direction_bits);
+    out["I_v_bits"].push_back(at.information.speed_bits);
+    out["I_d_shuffled_bits"].push_back(at.shuffled_direction_bits);
+    out["I_v_shuffled_bits"].push_back(at.shuffled_speed_bits);
+    out["sigma_min_dis_m"].push_back(at.sigma_nearest_m);
+    out["sigma_curr_eft_m"].push_back(at.sigma_effort_m);
+  }
+  return out;
+}
+
 Json lag_of(const Plan& plan, const std::vector<double>& lag_s) {
   Json start = Json::array();
   for (const TransitionFacts& one : plan.transitions) start.push_back(to_seconds(one.start));
@@ -87,11 +105,7 @@ std::string report_json(const Plan& plan, const Show& show, const ReportFacts& f
                  {"fastest_m_s", facts.ways.fastest_mps},
                  {"median_m", facts.measures.show.median_distance_m},
                  {"gini", facts.measures.show.distance_gini}};
-  out["crowd"] = {{"time_s", facts.crowd.time_s},
-                  {"I_d_bits", facts.crowd.information},
-                  {"I_v_bits", facts.crowd.pace_information},
-                  {"sigma_min_dis_m", facts.crowd.sigma_nearest_m},
-                  {"sigma_curr_eft_m", facts.crowd.sigma_effort_m}};
+  out["crowd"] = crowd_of(facts.crowd);
   out["buses"] = buses_of(facts.buses);
   out["buses_missing"] = facts.buses_missing.empty() ? Json() : Json(facts.buses_missing);
   out["supplies"] = supplies_json(facts.supplies);

@@ -223,22 +223,33 @@ class Page {
     heading(
         "How calmly the crowd moves",
         "Xu et al. 2015: mutual information of place and direction (I_d, Eq. 17; low: people near each other and far "
-        "apart go the same way) and of place and speed (I_v), spread of the distance to the nearest neighbour (Eq. "
-        "24), spread of the way since "
-        "the formation before (Eq. 26).");
-    const CrowdSeries& c = facts_.crowd;
+        "apart go the same way) and of place and speed (I_v), of those who walk; beside them what chance alone gives, "
+        "with the same ways of walking dealt out at random. Spread of the distance to the nearest neighbour (Eq. 24) "
+        "and of the way since the key formation before (Eq. 26).");
+    const planner::CrowdSeries& c = facts_.crowd;
+    const auto line = [&](const char* name, const auto& figure) {
+      PlotLine out{name, c.time_s, {}};
+      for (const planner::CrowdInstant& at : c.at) out.y.push_back(figure(at));
+      return out;
+    };
+    using At = const planner::CrowdInstant&;
     out_ += plotted({"Mutual information of place with direction and with speed",
                      "time, s",
                      "bits",
-                     {{"I_d", c.time_s, c.information}, {"I_v", c.time_s, c.pace_information}},
+                     {line("I_d", [](At at) { return at.information.direction_bits; }),
+                      line("I_v", [](At at) { return at.information.speed_bits; }),
+                      line("I_d by chance", [](At at) { return at.shuffled_direction_bits; }),
+                      line("I_v by chance", [](At at) { return at.shuffled_speed_bits; })},
                      {},
                      "",
                      true,
                      false});
+    out_ += fmt::format("<p>R {:g} m, K {}.</p>\n", c.classes.bin_m, c.classes.sectors);
     out_ += plotted({"Local structure and effort",
                      "time, s",
                      "m",
-                     {{"sigma_min_dis", c.time_s, c.sigma_nearest_m}, {"sigma_curr_eft", c.time_s, c.sigma_effort_m}},
+                     {line("sigma_min_dis", [](At at) { return at.sigma_nearest_m; }),
+                      line("sigma_curr_eft", [](At at) { return at.sigma_effort_m; })},
                      {},
                      "",
                      true,

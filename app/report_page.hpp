@@ -12,6 +12,7 @@
 #include "core/plan.hpp"
 #include "core/rig.hpp"
 #include "core/show.hpp"
+#include "planner/crowd_measure.hpp"
 #include "planner/measure.hpp"
 
 namespace footlight::app {
@@ -32,7 +33,7 @@ struct ReportFacts {
   std::vector<double> lag_s;
   DrawingSeries drawing;
   ClearanceSeries clearance;
-  CrowdSeries crowd;
+  planner::CrowdSeries crowd;
   WayFigures ways;
   std::vector<BusLoad> buses;
   std::string buses_missing;  ///< why there are no bus loads, nor those of supplies

@@ -141,6 +141,9 @@ std::vector<MovingObstacle> read_obstacles(MappingReader& section) {
 const std::vector<MotionModel>& motion_models() {
   // A model adds one line.
   static const std::vector<MotionModel> kModels{
+      {"collective", PlannerModel::collective,
+       "Pairs people and places with the least effort and leads sub-groups by social forces.", collective_listing,
+       read_collective},
       {"srd", PlannerModel::srd,
        "Groups keep their formation on their way, give it up where they meet others, and find it again.", srd_listing,
        read_srd},

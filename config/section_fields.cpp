@@ -134,9 +134,8 @@ Listing planner_keys() {
 const Listing& planner_listing() {
   static const Listing kListing = [] {
     Listing out = planner_keys();
-    Field& model = out.fields.front();
     for (const MotionModel& one : motion_models()) {
-      model.choices.push_back(one.name);
+      out.fields.front().choices.push_back(one.name);
       out.fields.push_back(
           {.key = one.name, .type = Type::mapping, .doc = one.doc, .otherwise = "as below", .listing = &one.listing()});
     }

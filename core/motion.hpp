@@ -9,6 +9,7 @@
 #include "core/diagnostic.hpp"
 #include "core/grid.hpp"
 #include "core/index.hpp"
+#include "core/motion/collective_options.hpp"
 #include "core/motion/srd_options.hpp"
 #include "core/motion/swarm_options.hpp"
 
@@ -33,7 +34,7 @@ struct MovingObstacle {
 };
 
 /// Parameters of the models of motion, each in its own header.
-using MotionOptions = std::variant<std::monostate, SrdOptions, SwarmOptions>;
+using MotionOptions = std::variant<std::monostate, CollectiveOptions, SrdOptions, SwarmOptions>;
 
 /// How a section moves people that has a model of motion: from where the section before leaves them to the formation of
 /// its own, over the whole duration.

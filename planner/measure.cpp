@@ -123,6 +123,8 @@ void add_clearance(const Plan& plan, const Walks& walks, Instant start, Instant 
 
 /// Frames in batches: parallel inside of a batch, progress between two.
 constexpr std::size_t kBatch = 64;
+/// How often it is looked at how the crowd moves.
+constexpr double kCrowdStep_s = 0.5;
 
 class Measurer {
  public:
@@ -159,10 +161,24 @@ class Measurer {
       ++out.show.formations;
       if (formation.section.at() < out.sections.size()) ++out.sections[formation.section.at()].formations;
     }
+    add_crowd(out);
     return out;
   }
 
  private:
+  void add_crowd(ShowMeasures& out) {
+    if (progress_.stopped()) return;
+    const CrowdSeries series = crowd_series(plan_, kCrowdStep_s);
+    out.crowd_classes = series.classes;
+    double after_s = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < out.sections.size(); ++k) {
+      const double until_s = to_seconds(plan_.sections[k].end);
+      out.sections[k].crowd = crowd_figures(series, after_s, until_s);
+      after_s = std::max(after_s, until_s);
+    }
+    out.show.crowd = crowd_figures(series, -std::numeric_limits<double>::infinity(), after_s);
+  }
+
   void draw(ShowMeasures& out) {
     std::vector<std::optional<DrawingJudge>> judges(films_.size());
     std::size_t frames = 0;

@@ -7,6 +7,7 @@
 
 #include "core/film.hpp"
 #include "core/plan.hpp"
+#include "planner/crowd_measure.hpp"
 #include "planner/progress.hpp"
 
 namespace footlight::planner {
@@ -34,10 +35,12 @@ struct Measures {
   std::uint64_t arrivals = 0;   ///< marks on another cell than the mark before: what people must learn
   double marks_per_minute = 0;  ///< arrivals of one performer, mean over people and time
   int formations = 0;
+  std::optional<CrowdFigures> crowd;  ///< Xu 2015, every half second; absent: nobody walks, or not measured
 };
 
 struct ShowMeasures {
-  Measures show;  ///< thetas: over the frames of all sections, so that each frame weighs the same
+  InformationClasses crowd_classes;  ///< R and K of `crowd`
+  Measures show;                     ///< thetas: over the frames of all sections, so that each frame weighs the same
   std::vector<Measures> sections;
 };
 
@@ -56,8 +59,8 @@ struct ShowMeasures {
 [[nodiscard]] ShowMeasures measure(const Plan& plan, const std::vector<std::optional<Film>>& films,
                                    const Progress& progress = {});
 
-/// What `measure` says without films of a plan whose transitions have just been proved: their facts are taken at their
-/// word, and nothing is judged again. @param plan valid, as `plan_show` returns it. O(marks)
+/// What `measure` says without films and how the crowd moves, of a plan whose transitions have just been proved: their
+/// facts are taken at their word, and nothing is judged again. @param plan valid, as `plan_show` returns it. O(marks)
 [[nodiscard]] ShowMeasures measure_walks(const Plan& plan);
 
 /// Tolerated lag of each transition of a plan, s, at most 2 s, measured anew: a plan from a file may say anything.

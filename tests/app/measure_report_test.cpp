@@ -31,10 +31,11 @@ planner::ShowMeasures measures() {
   film.distance_gini = 0.25;
   film.direction_changes = 7;
   film.marks_per_minute = 6;
+  film.crowd = planner::CrowdFigures{20, 12.25, 0.5, 0.25, 0.125, 0.0625, 0.75, 2.5};
   planner::Measures cells;
   cells.formations = 1;
   cells.min_clearance_m = std::numeric_limits<double>::infinity();
-  return {film, {film, cells}};
+  return {{{}, 8.4, 8, 1.4}, film, {film, cells}};
 }
 
 MeasuredPlan measured() {
@@ -58,7 +59,7 @@ MeasuredPlan measured() {
   return out;
 }
 
-TEST(MeasureReport, IsThreeTablesForPeople) {
+TEST(MeasureReport, IsFourTablesForPeople) {
   EXPECT_EQ(measure_text({measured()}),
             "section  formations  frames  theta_dev  variance  theta_miss  theta_iou\n"
             "film              4      25     5.12 %     0.001     10.00 %    20.00 %\n"
@@ -74,6 +75,11 @@ TEST(MeasureReport, IsThreeTablesForPeople) {
             "film     1234 m     12 m      2.5 x  0.25         3.5             6.0\n"
             "bow         0 m      0 m          -  0.00         0.0             0.0\n"
             "show     1234 m     12 m      2.5 x  0.25         3.5             6.0\n"
+            "\n"
+            "section  walking    I_d  by chance    I_v  by chance  sigma_min_dis  sigma_curr_eft\n"
+            "film          12  0.500      0.250  0.125      0.062        0.750 m          2.50 m\n"
+            "bow            -      -          -      -          -              -               -\n"
+            "show          12  0.500      0.250  0.125      0.062        0.750 m          2.50 m\n"
             "The plan is not valid: it breaks its limits.\n");
 }
 
@@ -110,6 +116,10 @@ TEST(MeasureReport, PutsSeveralPlansSideBySideAndMarksTheInvalidOnes) {
             "plan                   walked  longest  to median  Gini  turns each  marks a minute  planned in\n"
             "good.plan              1234 m     12 m      2.5 x  0.25         3.5             6.0           -\n"
             "show.yaml (not valid)  1234 m     12 m      2.5 x  0.25         3.5             6.0      1.50 s\n"
+            "\n"
+            "plan                   walking    I_d  by chance    I_v  by chance  sigma_min_dis  sigma_curr_eft\n"
+            "good.plan                   12  0.500      0.250  0.125      0.062        0.750 m          2.50 m\n"
+            "show.yaml (not valid)       12  0.500      0.250  0.125      0.062        0.750 m          2.50 m\n"
             "The plan of show.yaml is not valid: it breaks its limits.\n");
   const Json json = Json::parse(measure_json({good, planned}));
   EXPECT_EQ(json["plans"][0]["valid"], true);
@@ -142,6 +152,12 @@ TEST(MeasureReport, IsJsonForPrograms) {
   EXPECT_EQ(json["sections"][1]["min_clearance_m"], Json());
   EXPECT_EQ(json["sections"][1]["closest"], Json());
   EXPECT_EQ(json["sections"][1]["longest_to_median"], Json());
+  EXPECT_EQ(json["crowd"]["R_m"], 8.4);
+  EXPECT_EQ(json["crowd"]["K"], 8);
+  EXPECT_EQ(json["crowd"]["N"], 12.25);
+  EXPECT_EQ(json["crowd"]["I_d_shuffled_bits"], 0.25);
+  EXPECT_EQ(json["sections"][0]["crowd"]["sigma_curr_eft_m"], 2.5);
+  EXPECT_EQ(json["sections"][1]["crowd"], Json());
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ std::vector<Model> models() {
   std::vector<Model> out;
   // Its groups refuse a way that takes longer than the task; tests/planner/srd renumbers people.
   out.push_back({"srd", SrdOptions{}, std::nullopt});
+  out.push_back({"collective", CollectiveOptions{}, std::nullopt});
   out.push_back({"swarm", SwarmOptions{}, std::nullopt});
   return out;
 }
