@@ -113,9 +113,10 @@ std::vector<bool> flags_of(std::size_t size, Gone gone) {
 std::vector<bool> empty_places(const CellsSource& listed, const Plan& plan, std::size_t section) {
   std::vector<bool> out(listed.cells.size(), false);
   std::size_t too_many = listed.cells.size() - std::min(listed.cells.size(), plan.performers.size());
-  const auto formation = std::ranges::find_if(
-      plan.formations, [&](const Formation& one) { return one.section == SectionIndex::of(section); });
-  if (formation == plan.formations.end()) return out;
+  // The last one: a model of motion leads people there.
+  const auto formation = std::find_if(plan.formations.rbegin(), plan.formations.rend(),
+                                      [&](const Formation& one) { return one.section == SectionIndex::of(section); });
+  if (formation == plan.formations.rend()) return out;
   for (std::size_t i = 0; i < out.size() && too_many > 0; ++i) {
     if (std::ranges::find(formation->cells, listed.cells[i]) != formation->cells.end()) continue;
     out[i] = true;

@@ -214,7 +214,7 @@ Listing section_keys() {
                .range = {1, kMostCounts}},
               {.key = "duration",
                .type = Type::counts,
-               .doc = "The video is stretched over it.",
+               .doc = "The video is stretched over it; a model of motion moves people so long.",
                .otherwise = "the video's own length",
                .range = {0, kMostCounts, true}},
               {.key = "hold",

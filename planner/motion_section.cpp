@@ -65,6 +65,7 @@ class MotionSection {
     if (!snapped) return interrupted();
     if (snapped->caught) return caught(*snapped->caught);
     plan->section.obstacles = obstacles();
+    plan->section.film.reset();  // people stand in the picture at the end alone
     std::move(led->notes.begin(), led->notes.end(), std::back_inserter(plan->section.notes));
     note_marks(*snapped, plan->section.notes);
     plan->stations = stations(*snapped);

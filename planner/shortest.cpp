@@ -32,6 +32,8 @@ std::string who_is_at(const Plan& plan, CellIndex cell, Instant instant) {
 std::optional<Planned::Shortest> shortest_duration(const Show& show, const Chain& chain, SectionIndex section,
                                                    const Plan& plan) {
   const Section& asked = show.sections[section.at()];
+  // A model of motion takes all the time that there is.
+  if (asked.motion != nullptr) return std::nullopt;
   // Steps over cells are counted and not measured: `refusal` tells how many are missing.
   if (show.stage.walk == WalkKind::cells) return std::nullopt;
   // Planned together with its walks a drawing asks for nothing that takes longer than there is.

@@ -5,6 +5,7 @@
 
 #include "core/check.hpp"
 #include "planner/by_hand.hpp"
+#include "planner/casting.hpp"
 #include "planner/formation/summed_area.hpp"
 
 namespace footlight::planner {
@@ -65,6 +66,7 @@ Drawn::Drawn(const Show& present, const Plan& plan, const std::optional<Film>& f
   }
   const Section& asked = present.sections[section.at()];
   const auto* listed = std::get_if<CellsSource>(&asked.from);
+  const bool drawn_again = asked.motion == nullptr && (listed != nullptr || plan.sections[section.at()].film);
   for (std::size_t k = 0; k < plan.formations.size(); ++k) {
     const Formation& at = plan.formations[k];
     if (at.section != section) continue;
@@ -74,13 +76,27 @@ Drawn::Drawn(const Show& present, const Plan& plan, const std::optional<Film>& f
     station.count = at.count;
     station.frame = at.frame;
     station.arrive = station.depart = at.time;
+    if (!drawn_again) {
+      take_planned(present, at, station);
+      continue;
+    }
     station.cells = listed != nullptr ? listed->cells : drawing(at, film);
     station.pinned = listed != nullptr && listed->assigned;
+    if (listed != nullptr) station.groups = listed->groups;
     station.key = at.key;
     station.exact = !at.frame || stations_.size() == 1 || (at.key && !asked.keys.empty());
   }
-  if (listed == nullptr) add_waiting();
+  if (listed == nullptr && drawn_again) add_waiting();
   change_by_hand(present);
+}
+
+void Drawn::take_planned(const Show& present, const Formation& at, Station& station) const {
+  station.cells = at.cells;
+  station.exact = at.key;
+  station.follows = present.sections[section_.at()].motion != nullptr;
+  const std::vector<char> bound = bound_groups(present);
+  if (std::find(bound.begin(), bound.end(), 1) == bound.end()) return;
+  for (const Performer& performer : present.performers) station.groups.push_back(performer.group);
 }
 
 void Drawn::change_by_hand(const Show& present) {

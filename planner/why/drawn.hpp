@@ -43,6 +43,8 @@ class Drawn {
  private:
   [[nodiscard]] std::vector<CellIndex> drawing(const Formation& at, const std::optional<Film>& film);
   void add_waiting();
+  /// Of what is not drawn again, parts and the ways of a model of motion: people are where they are wanted.
+  void take_planned(const Show& present, const Formation& at, Station& station) const;
   void change_by_hand(const Show& present);
 
   const Plan& plan_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <string>
 #include <variant>
@@ -26,6 +27,8 @@ struct Model {
   /// The same without anything drawn by chance, where the model can do without: then who is which number means nothing.
   std::optional<MotionOptions> certain;
 };
+
+void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
 
 /// Every model that leads a crowd from places to places. A painting brings both of its own: tests/planner/painted.
 std::vector<Model> models() {
@@ -111,7 +114,7 @@ TEST_P(MotionContract, GivesEverybodyAPlaceOfHerGroup) {
 
 TEST_P(MotionContract, LeadsPeopleToTheirPlaces) {
   Scene scene;
-  lay_out(scene, 40, true, 1);
+  lay_out(scene, 40, false, 1);
   const Trajectory out = led(scene.task, GetParam().options);
   std::size_t there = 0;
   for (std::size_t p = 0; p < 40; ++p) {
