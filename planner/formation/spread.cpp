@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace footlight::planner {
 namespace {
@@ -23,9 +25,9 @@ class Bins {
     auto& here = bins_[key(bin(at.x), bin(at.y))];
     std::erase_if(here, [&](const Entry& entry) { return entry.number == number; });
   }
-  /// Squared distance of the nearest point within one side, other than `number`; infinity when there is none.
-  [[nodiscard]] double nearest(Point at, std::uint32_t number) const {
-    double least = kFar;
+  /// Calls visit(number, squared distance) for every point but `number` within one side.
+  template <class Visit>
+  void near(Point at, std::uint32_t number, Visit visit) const {
     const std::int64_t column = bin(at.x);
     const std::int64_t row = bin(at.y);
     for (std::int64_t y = row - 1; y <= row + 1; ++y) {
@@ -33,11 +35,17 @@ class Bins {
         const auto found = bins_.find(key(x, y));
         if (found == bins_.end()) continue;
         for (const Entry& entry : found->second) {
-          if (entry.number != number) least = std::min(least, squared_length(entry.at - at));
+          const double squared = squared_length(entry.at - at);
+          if (entry.number != number && squared <= side_m_ * side_m_) visit(entry.number, squared);
         }
       }
     }
-    return least <= side_m_ * side_m_ ? least : kFar;
+  }
+  /// Squared distance of the nearest of them; infinity when there is none.
+  [[nodiscard]] double nearest(Point at, std::uint32_t number) const {
+    double least = kFar;
+    near(at, number, [&](std::uint32_t, double squared) { least = std::min(least, squared); });
+    return least;
   }
 
  private:
@@ -85,19 +93,24 @@ void leave_out_nearest(std::span<const Point> points, std::vector<std::uint32_t>
   Bins bins(2 * apart_m);
   for (const std::uint32_t i : kept) bins.add(points[i], i);
   std::vector<double> nearest(points.size(), kFar);
-  for (const std::uint32_t i : kept) nearest[i] = bins.nearest(points[i], i);
-  while (kept.size() > wanted) {
-    auto worst = kept.begin();
-    for (auto at = kept.begin(); at != kept.end(); ++at) {
-      if (nearest[*at] <= nearest[*worst]) worst = at;
-    }
-    const std::uint32_t gone = *worst;
-    kept.erase(worst);
+  using Crowded = std::pair<double, std::uint32_t>;  // the nearest first, of equals the later point
+  const auto before = [](const Crowded& a, const Crowded& b) {
+    return a.first < b.first || (a.first == b.first && a.second > b.second);
+  };
+  std::set<Crowded, decltype(before)> order(before);
+  for (const std::uint32_t i : kept) order.emplace(nearest[i] = bins.nearest(points[i], i), i);
+  while (order.size() > wanted) {
+    const std::uint32_t gone = order.begin()->second;
+    order.erase(order.begin());
     bins.take_away(points[gone], gone);
-    for (const std::uint32_t i : kept) {
-      if (squared_length(points[i] - points[gone]) <= 4 * apart_m * apart_m) nearest[i] = bins.nearest(points[i], i);
-    }
+    bins.near(points[gone], gone, [&](std::uint32_t i, double) {
+      order.erase({nearest[i], i});
+      order.emplace(nearest[i] = bins.nearest(points[i], i), i);
+    });
   }
+  kept.clear();
+  for (const auto& [distance_m, i] : order) kept.push_back(i);
+  std::sort(kept.begin(), kept.end());
 }
 
 }  // namespace

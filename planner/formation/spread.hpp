@@ -16,7 +16,7 @@ namespace footlight::planner {
 /// than the largest distance at which so many are left, then those with the nearest neighbours left out until the
 /// number is exact. The order of the points decides among equals; what is left keeps it.
 /// @param least_m no two of them may be nearer than this
-/// @return fewer points than wanted where the distance leaves no more. O(points x 40)
+/// @return fewer points than wanted where the distance leaves no more. O(points x 40 + those left out x log)
 [[nodiscard]] std::vector<Point> thin(std::span<const Point> points, std::size_t wanted, double least_m);
 
 }  // namespace footlight::planner

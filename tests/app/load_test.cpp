@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/parts.hpp"
+
 namespace footlight::app {
 namespace {
 
@@ -85,6 +87,43 @@ TEST_F(DecodeFilms, EveryWrongFilmIsReportedAtItsSection) {
                         "directory\n"
                         "show.yaml:12:5: error: sections[1].from.image: cannot read '/nowhere/b.png': No such file or "
                         "directory"));
+}
+
+TEST_F(DecodeFilms, OfPartsHaveAFrameForEachPictureAndAreReportedAtTheirPart) {
+  Part shape;
+  Part word;
+  word.drawing = Lettering{"A", "DejaVu Sans"};
+  word.position = {"show.yaml", 11, 7};
+  Part block;
+  block.drawing = Picture{kImage, {}};
+  const auto source = [](std::vector<Part> parts) {
+    return PartsSource{std::make_shared<const std::vector<Part>>(std::move(parts))};
+  };
+  sections() = {section("a", source({shape}), 1, 10), section("b", source({word, shape, block}), 9, 10)};
+  const auto films = decode();
+  ASSERT_TRUE(films) << films.error().message;
+  EXPECT_FALSE((*films)[0]);
+  EXPECT_EQ((*films)[1]->frames.size(), 2U);
+  word.drawing = Lettering{"\xE8\xB5\xB0", "DejaVu Sans"};
+  sections() = {section("b", source({shape, word}), 9, 10)};
+  const auto refused = decode();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(
+      refused.error(),
+      input_error("show.yaml:11:7: error: sections[0].from.parts[1].text: the font 'DejaVu Sans' has no character "
+                  "'\xE8\xB5\xB0' (U+8D70) (another font may have it)"));
+}
+
+TEST_F(DecodeFilms, OfAPaintingAreItsColours) {
+  sections() = {section("a", PaintingSource{kImage}, 1, 10), section("b", PaintingSource{"/nowhere/c.png"}, 9, 12)};
+  const auto films = decode();
+  ASSERT_FALSE(films);
+  EXPECT_EQ(films.error(), input_error("show.yaml:12:5: error: sections[1].from.painting: cannot read "
+                                       "'/nowhere/c.png': No such file or directory"));
+  sections().pop_back();
+  const auto one = decode();
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ((*one)[0]->rgb.size(), 3U * 40 * 30);
 }
 
 TEST_F(DecodeFilms, AnInterruptionIsNoErrorOfTheFile) {

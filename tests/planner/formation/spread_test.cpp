@@ -69,5 +69,19 @@ TEST(Thin, SpreadsWhatIsLeftWiderThanChanceDoes) {
   EXPECT_GT(least_distance(left), 0.9);
 }
 
+TEST(Thin, LeavesOutTheLaterOfTheTwoNearestUntilTheNumberIsExact) {
+  // At 2 m or less all are left, above it two: the step between is made one by one.
+  const std::vector<Point> points{{0, 0}, {2, 0}, {4, 0}, {6, 0}};
+  EXPECT_EQ(thin(points, 3, 0), (std::vector<Point>{{0, 0}, {2, 0}, {4, 0}}));
+}
+
+TEST(Thin, OfALatticeIsQuickWhereItsNumberJumps) {
+  std::vector<Point> points;
+  for (int x = 0; x < 300; ++x) {
+    for (int y = 0; y < 300; ++y) points.push_back({static_cast<double>(x), static_cast<double>(y)});
+  }
+  EXPECT_EQ(thin(points, 30'000, 0).size(), 30'000U);
+}
+
 }  // namespace
 }  // namespace footlight::planner
