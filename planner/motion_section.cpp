@@ -60,8 +60,9 @@ class MotionSection {
     instants_.thin(led->at, ways_);
     const std::vector<Ways> leg_ways = ways_beside_obstacles();
     if (auto error = check_ends(leg_ways)) return *error;
-    const auto snapped = snap_crowd(
-        {&ways_, leg_ways, from_.cells, goal_cells_, &led->at, instants_.at_s, instants_.longest_m}, progress_);
+    const auto snapped = snap_crowd({&ways_, leg_ways, from_.cells, goal_cells_, &led->at, instants_.at_s,
+                                     instants_.longest_m, show_.stage.clearance_m, task.group},
+                                    progress_);
     if (!snapped) return interrupted();
     if (snapped->caught) return caught(*snapped->caught);
     plan->section.obstacles = obstacles();
@@ -273,7 +274,9 @@ class MotionSection {
 
   [[nodiscard]] std::vector<Station> stations(const SnappedCrowd& snapped) const {
     std::vector<Station> out;
-    for (std::size_t k = 0; k < snapped.cells.size(); ++k) {
+    // Where the section before ends people stand already.
+    const bool touches = before_ != nullptr && before_->depart >= instant(0);
+    for (std::size_t k = touches ? 1 : 0; k < snapped.cells.size(); ++k) {
       const bool last = k + 1 == snapped.cells.size();
       Station& station = out.emplace_back();
       station.section = index_;

@@ -11,6 +11,7 @@
 
 #include "core/check.hpp"
 #include "planner/motion/way_home.hpp"
+#include "planner/repair/closest_approach.hpp"
 #include "planner/schedule/pace.hpp"
 #include "planner/schedule/places.hpp"
 
@@ -28,6 +29,9 @@ constexpr double kStep = 0.02;
 /// How many walks ahead one gives way to what moves, and what each costs.
 constexpr std::size_t kAhead = 3;
 constexpr double kSoon = 0.5;
+/// How often cells are chosen again where ways conflict, and what a conflict costs each time, in squared pitches.
+constexpr int kRounds = 24;
+constexpr double kToll = 0.7;
 /// No way home is counted as longer.
 constexpr double kFarHome_m = 1e6;
 
@@ -148,16 +152,58 @@ class CrowdSnapper {
     return out;
   }
 
+  using Offered = std::vector<std::vector<Choice>>;  ///< to each person, in the order of `order_`
+
+  [[nodiscard]] std::optional<std::vector<CellIndex>> seated(const Offered& offered) const {
+    const auto places = cheapest_places(offered, static_cast<std::size_t>(grid_.size()));
+    if (!places) return std::nullopt;
+    std::vector<CellIndex> cells(order_.size());
+    for (std::size_t n = 0; n < order_.size(); ++n) cells[order_[n]] = (*places)[n];
+    return cells;
+  }
+
+  /// Pairs of different kinds that come too near to each other on the way to instant k.
+  [[nodiscard]] std::vector<NearPair> conflicts(std::size_t k, const std::vector<CellIndex>& cells) const {
+    if (task_.kind.empty() || task_.clearance_m <= 0) return {};
+    std::vector<Walk> walks;
+    for (std::size_t p = 0; p < cells.size(); ++p) {
+      walks.push_back({grid_.centre(out_.cells[k - 1][p]), grid_.centre(cells[p])});
+    }
+    std::vector<NearPair> close = near_pairs(walks, task_.clearance_m);
+    std::erase_if(close, [&](const NearPair& pair) { return task_.kind[pair.a] == task_.kind[pair.b]; });
+    return close;
+  }
+
+  /// Makes the cells dearer on the way to which people conflict, and seats everybody again; the best is taken.
+  [[nodiscard]] std::vector<CellIndex> keep_clear(std::size_t k, Offered& offered, std::vector<CellIndex> cells) const {
+    std::vector<NearPair> close = conflicts(k, cells);
+    std::vector<CellIndex> best = cells;
+    std::size_t fewest = close.size();
+    std::vector<std::size_t> place_of(order_.size());
+    for (std::size_t n = 0; n < order_.size(); ++n) place_of[order_[n]] = n;
+    for (int round = 0; round < kRounds && !close.empty(); ++round) {
+      for (const NearPair& pair : close) {
+        for (const std::uint32_t person : {pair.a, pair.b}) {
+          for (Choice& choice : offered[place_of[person]]) choice.cost += choice.cell == cells[person] ? kToll : 0;
+        }
+      }
+      cells = *seated(offered);
+      close = conflicts(k, cells);
+      if (close.size() >= fewest) continue;
+      fewest = close.size();
+      best = cells;
+    }
+    return best;
+  }
+
   /// Marks of instant k. @return false when somebody is caught
   bool step(std::size_t k) {
-    std::vector<std::vector<Choice>> offered(order_.size());
+    Offered offered(order_.size());
     for (const double radius : kRadii) {
       for (std::size_t n = 0; n < order_.size(); ++n) offered[n] = choices(k, order_[n], radius * pitch_);
-      const auto places = cheapest_places(offered, static_cast<std::size_t>(grid_.size()));
-      if (!places) continue;
-      std::vector<CellIndex> cells(order_.size());
-      for (std::size_t n = 0; n < order_.size(); ++n) cells[order_[n]] = (*places)[n];
-      out_.cells.push_back(std::move(cells));
+      auto cells = seated(offered);
+      if (!cells) continue;
+      out_.cells.push_back(keep_clear(k, offered, *std::move(cells)));
       return true;
     }
     // Whoever has the fewest cells to go to is named.

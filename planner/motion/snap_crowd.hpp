@@ -21,6 +21,9 @@ struct SnapCrowdTask {
   const std::vector<std::vector<Point>>* at = nullptr;  ///< the trajectory: for each instant, of each person
   std::span<const double> at_s;                         ///< the instants, ascending
   std::span<const double> longest_m;                    ///< how far anybody may walk to the next; one less
+  /// Walks of people of different kinds keep it, where cells near do; who is of one kind exchanges her target instead.
+  double clearance_m = 0;
+  std::span<const std::uint32_t> kind = {};  ///< of each person; empty: all are of one
 };
 
 /// Marks of a crowd.

@@ -91,13 +91,23 @@ TEST(MotionSection, HasAMarkEveryFewCountsAndSaysHowFarMarksAreFromTheWay) {
   const Planned planned = planned_of(crossing_show());
   std::vector<double> counts;
   for (const Formation& one : planned.plan.formations) counts.push_back(one.count);
-  EXPECT_EQ(counts.size(), 1U + 25U);
-  EXPECT_EQ(counts[1], 5);
-  EXPECT_EQ(counts[2], 9);
+  // The one before ends when this begins: nobody needs a mark then.
+  ASSERT_EQ(counts.size(), 1U + 24U);
+  EXPECT_EQ(counts[0], 1);
+  EXPECT_EQ(counts[1], 9);
   EXPECT_THAT(
       planned.plan.sections[1].notes,
       testing::Contains(testing::ContainsRegex(
           "25 marks, every 4 counts where that is enough, are 0\\.[0-9]+ m from the model's way, at most [0-9.]+ m")));
+}
+
+TEST(MotionSection, AfterAPauseEverybodyStandsUntilItBegins) {
+  Show show = crossing_show();
+  show.sections[1].start_count = 13;
+  const Planned planned = planned_of(show);
+  EXPECT_TRUE(planned.plan.valid) << testing::PrintToString(planned.refusal);
+  EXPECT_EQ(planned.plan.formations[1].count, 13);
+  EXPECT_EQ(planned.plan.formations[1].cells, planned.plan.formations[0].cells);
 }
 
 TEST(MotionSection, IsTheSameForAnyNumberOfThreads) {

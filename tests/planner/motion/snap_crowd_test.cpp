@@ -10,6 +10,7 @@
 #include <rapidcheck.h>
 
 #include "core/rng.hpp"
+#include "planner/repair/closest_approach.hpp"
 #include "tests/support/plan_builder.hpp"
 
 namespace footlight::planner {
@@ -164,6 +165,26 @@ TEST(SnapCrowd, OfTwoWhoWantOneCellTheSumOfSquaresDecides) {
   const auto snapped = snap_crowd(led.task(Ways(stage, 0.25)), {});
   EXPECT_EQ(snapped->cells[1][0], stage.grid.index({4, 4}));
   EXPECT_EQ(snapped->cells[1][1], stage.grid.index({5, 4}));
+}
+
+TEST(SnapCrowd, PeopleOfTwoKindsWhoMeetHeadOnPassEachOther) {
+  const Stage stage = open_stage(9, 9);
+  const Point home = stage.grid.centre(Cell{4, 4});
+  Led led = one_led(stage, {3, 4}, {home + Point{-1, 0}, home + Point{1, 0}}, 2.8);
+  led.from.push_back(stage.grid.index({5, 4}));
+  led.at[0].push_back(home + Point{1, 0});
+  led.at[1].push_back(home + Point{-1, 0});
+  const std::vector<std::uint32_t> kind{0, 1};
+  const Ways ways(stage, 0.25);
+  SnapCrowdTask task = led.task(ways);
+  task.clearance_m = 0.6;
+  EXPECT_EQ(snap_crowd(task, {})->cells[1][0], stage.grid.index({5, 4}));  // of one kind they exchange targets
+  task.kind = kind;
+  const auto snapped = snap_crowd(task, {});
+  const std::vector<Walk> walks{{led.at[0][0], stage.grid.centre(snapped->cells[1][0])},
+                                {led.at[0][1], stage.grid.centre(snapped->cells[1][1])}};
+  EXPECT_GE(closest_approach(walks[0], walks[1]).distance_m, 0.6);
+  EXPECT_LT(snapped->max_m, 1.5);
 }
 
 TEST(SnapCrowd, WhoIsLedTooFastComesAfterAsFastAsSheWalks) {
