@@ -147,6 +147,10 @@ const std::vector<MotionModel>& motion_models() {
       {"srd", PlannerModel::srd,
        "Groups keep their formation on their way, give it up where they meet others, and find it again.", srd_listing,
        read_srd},
+      {"swarm", PlannerModel::swarm,
+       "Everybody looks for a way of her own to her place or to a target that moves; one cost for targets, obstacles "
+       "and people.",
+       swarm_listing, read_swarm},
   };
   return kModels;
 }

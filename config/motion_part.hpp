@@ -28,6 +28,8 @@ struct MotionModel {
 [[nodiscard]] MotionOptions read_srd(ShowReading& show, MappingReader reader);
 [[nodiscard]] const Listing& collective_listing();
 [[nodiscard]] MotionOptions read_collective(ShowReading& show, MappingReader reader);
+[[nodiscard]] const Listing& swarm_listing();
+[[nodiscard]] MotionOptions read_swarm(ShowReading& show, MappingReader reader);
 
 /// Keys of a section that go with a model of motion, beside `planner`; `paths`, `obstacles`, `marks` and `seed` in this
 /// order.

@@ -55,6 +55,27 @@ const Listing& obstacle_listing() {
   return kListing;
 }
 
+const Listing& terrain_listing() {
+  static const Listing kListing{
+      "stage.terrain",
+      "How the ground slows people down. Models of motion keep to it as their pages say; the limit of speed that a "
+      "plan "
+      "is judged by is `max_speed` everywhere.",
+      {
+          {.key = "map",
+           .type = Type::file,
+           .doc = "A grey picture (PNG, JPEG, BMP), stretched over the whole floor, its top upstage: black is level "
+                  "ground, white is where people are slowest, even between.",
+           .required = true},
+          {.key = "slowest",
+           .type = Type::number,
+           .doc = "Share of everybody's speed that is left on white.",
+           .fallback = "0.5",
+           .range = {0.1, 1}},
+      }};
+  return kListing;
+}
+
 const Listing& stage_listing() {
   static const Listing kListing{
       "stage",
@@ -93,6 +114,11 @@ const Listing& stage_listing() {
            .doc = "How late anybody may start or stop without coming too close; reported for each transition.",
            .fallback = "0.2 s",
            .range = {0, 10}},
+          {.key = "terrain",
+           .type = Type::mapping,
+           .doc = "Hills: where people walk more slowly.",
+           .otherwise = "level ground",
+           .listing = &terrain_listing()},
       }};
   return kListing;
 }

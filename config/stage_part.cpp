@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <utility>
 
 #include "config/media.hpp"
 #include "config/nearest.hpp"
 #include "config/obstacles.hpp"
 #include "config/show_parts.hpp"
+#include "core/terrain.hpp"
 
 namespace footlight::config {
 namespace {
@@ -41,6 +44,25 @@ std::optional<Mask> read_map(ShowReading& show, MappingReader& obstacle) {
   if (film) return std::move(film->frames.front());
   obstacle.error("map", film.error().message);
   return std::nullopt;
+}
+
+/// The grey map is decoded by the child process.
+void read_terrain(ShowReading& show, MappingReader reader) {
+  Terrain out;
+  out.position = reader.position();
+  out.slowest = reader.number("slowest").value_or(out.slowest);
+  out.path = existing_file(reader, "map", show.folder, show.loaded.files);
+  if (out.path.empty()) return;
+  const auto film = decode_painting({out.path});
+  if (!film) return reader.error("map", film.error().message);
+  out.width = film->width;
+  out.height = film->height;
+  for (std::size_t n = 0; n + 2 < film->rgb.size(); n += 3) {
+    // Luma of red, green and blue (ITU-R BT.601), in thousandths.
+    const int grey = 299 * film->rgb[n] + 587 * film->rgb[n + 1] + 114 * film->rgb[n + 2];
+    out.grey.push_back(static_cast<std::uint8_t>((grey + 500) / 1000));
+  }
+  show.show().terrain = std::make_shared<const Terrain>(std::move(out));
 }
 
 /// Cells of all obstacles, ascending.
@@ -143,6 +165,9 @@ void read_stage(ShowReading& show, MappingReader stage) {
   out.clearance_m = stage.quantity("clearance").value_or(out.clearance_m);
   out.max_speed_mps = stage.quantity("max_speed").value_or(out.max_speed_mps);
   if (const auto lag_s = stage.quantity("lag")) out.lag = seconds(*lag_s);
+  if (stage.has("terrain")) {
+    if (auto terrain = stage.mapping("terrain")) read_terrain(show, std::move(*terrain));
+  }
 }
 
 }  // namespace footlight::config

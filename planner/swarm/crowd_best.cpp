@@ -5,19 +5,18 @@
 
 namespace footlight::planner::swarm {
 
-void CrowdBest::improve(const Landscape& landscape, std::span<const Point> best, std::span<const double> best_worst,
+void CrowdBest::improve(const Landscape& landscape, std::span<const Point> best, std::span<const double> best_weighed,
                         std::span<const std::uint32_t> place, std::span<const Point> shifts) {
   std::vector<double> least;
-  for (std::size_t c = 0; c < offset.size(); ++c)
-    least.push_back(landscape.value(landscape.options().avoid, worst[c], length(offset[c])));
+  for (std::size_t c = 0; c < offset.size(); ++c) least.push_back(landscape.value(weighed[c], length(offset[c])));
   for (std::size_t p = 0; p < best.size(); ++p) {
     const std::uint32_t crowd = landscape.crowd(p);
     const Point from_target = best[p] - landscape.target(place[p], shifts[crowd]);
-    const double own = landscape.value(landscape.options().avoid, best_worst[p], length(from_target));
+    const double own = landscape.value(best_weighed[p], length(from_target));
     if (own >= least[crowd]) continue;
     least[crowd] = own;
     offset[crowd] = from_target;
-    worst[crowd] = best_worst[p];
+    weighed[crowd] = best_weighed[p];
   }
 }
 

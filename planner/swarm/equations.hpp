@@ -42,9 +42,9 @@ struct Pull {
 [[nodiscard]] inline double object_cost(double squared) { return std::exp(-squared); }
 
 /// F(P) = c_obj max_o Cost(P, o) + 1 / Cost(P, G)                                                              (9)
-/// @param target_squared |P - G|^2 / (scope of the whole floor)^2
-[[nodiscard]] inline double objective(double avoid, double worst_cost, double target_squared) {
-  return avoid * worst_cost + std::exp(target_squared);
+/// @param weighed c_obj times the largest cost  @param target_squared |P - G|^2 / (scope of the whole floor)^2
+[[nodiscard]] inline double objective(double weighed, double target_squared) {
+  return weighed + std::exp(target_squared);
 }
 
 /// prob(f) = 1 - f / e^-k, never below 0                                                                      (10)

@@ -44,9 +44,9 @@ class Landscape {
   /// Scope sigma of a person, and of a person against what is blocked.
   [[nodiscard]] double scope_m(std::size_t person) const { return scope_m_[person]; }
   [[nodiscard]] double still_scope_m() const { return still_scope_m_; }
-  /// Eq. 9, the target's scope being the whole floor. @param avoid c_obj  @param worst the largest cost of an object
-  [[nodiscard]] double value(double avoid, double worst, double to_target_m) const {
-    return objective(avoid, worst, to_target_m * to_target_m * per_floor_square_);
+  /// Eq. 9, the target's scope being the whole floor. @param weighed c_obj times the largest cost of an object
+  [[nodiscard]] double value(double weighed, double to_target_m) const {
+    return objective(weighed, to_target_m * to_target_m * per_floor_square_);
   }
   /// |P - Q|^2 / sigma^2 of the nearest blocked point Q, or `beyond` where that is more. O(1) far from everything.
   [[nodiscard]] double still_squared(Point at, double beyond) const;

@@ -24,20 +24,20 @@ OriginalSwarm::State OriginalSwarm::begin() const {
     const double angle = 2 * std::numbers::pi * rng.uniform();
     const double speed_mps = task.speed_mps[p] * landscape_->speed_factor(task.from[p]) * rng.uniform();
     out.velocity.push_back({speed_mps * std::cos(angle), speed_mps * std::sin(angle)});
-    out.best_worst.push_back(worst_cost(p, task.from[p], 0));
+    out.best_weighed.push_back(weighed_cost(p, task.from[p], 0));
   }
   out.crowd_best = CrowdBest(landscape_->crowds());
-  out.crowd_best.improve(*landscape_, out.best, out.best_worst, landscape_->first_places(), landscape_->shifts(0));
+  out.crowd_best.improve(*landscape_, out.best, out.best_weighed, landscape_->first_places(), landscape_->shifts(0));
   return out;
 }
 
-double OriginalSwarm::worst_cost(std::size_t person, Point at, double at_s) const {
+double OriginalSwarm::weighed_cost(std::size_t person, Point at, double at_s) const {
   double squared = landscape_->still_squared(at, std::numeric_limits<double>::infinity());
   for (const MotionFloor::Disc& disc : landscape_->task().floor->discs(at_s)) {
     const double both_m = disc.radius_m + landscape_->scope_m(person);
     squared = std::min(squared, squared_length(at - disc.centre) / (both_m * both_m));
   }
-  return object_cost(squared);
+  return landscape_->options().avoid * object_cost(squared);
 }
 
 void OriginalSwarm::step_one(const State& now, State& next, std::size_t p, Point target) const {
@@ -68,15 +68,14 @@ void OriginalSwarm::step(const State& now, State& next) const {
     for (std::size_t p = first; p < last; ++p) {
       const Point target = landscape_->target(places[p], shifts[landscape_->crowd(p)]);
       step_one(now, next, p, target);
-      const double worst = worst_cost(p, next.position[p], from_s + step_s());
-      const double best =
-          landscape_->value(landscape_->options().avoid, now.best_worst[p], distance(now.best[p], target));
-      if (landscape_->value(landscape_->options().avoid, worst, distance(next.position[p], target)) > best) continue;
+      const double weighed = weighed_cost(p, next.position[p], from_s + step_s());
+      const double best = landscape_->value(now.best_weighed[p], distance(now.best[p], target));
+      if (landscape_->value(weighed, distance(next.position[p], target)) > best) continue;
       next.best[p] = next.position[p];
-      next.best_worst[p] = worst;
+      next.best_weighed[p] = weighed;
     }
   });
-  next.crowd_best.improve(*landscape_, next.best, next.best_worst, places, shifts);
+  next.crowd_best.improve(*landscape_, next.best, next.best_weighed, places, shifts);
 }
 
 }  // namespace footlight::planner::swarm

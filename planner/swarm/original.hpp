@@ -15,10 +15,10 @@ namespace footlight::planner::swarm {
 class OriginalSwarm {
  public:
   struct State : Crowd {
-    std::vector<Point> wanted;       ///< where each person would be by now if nothing had stopped her
-    std::vector<Point> best;         ///< P_BLS, m
-    std::vector<double> best_worst;  ///< the largest cost of an object there
-    CrowdBest crowd_best;            ///< P_BGS
+    std::vector<Point> wanted;         ///< where each person would be by now if nothing had stopped her
+    std::vector<Point> best;           ///< P_BLS, m
+    std::vector<double> best_weighed;  ///< c_obj times the largest cost of an object there
+    CrowdBest crowd_best;              ///< P_BGS
   };
 
   /// @param landscape must live as long as this
@@ -29,8 +29,8 @@ class OriginalSwarm {
   void step(const State& now, State& next) const;
 
  private:
-  /// The largest cost of an object at a point (Eq. 8).
-  [[nodiscard]] double worst_cost(std::size_t person, Point at, double at_s) const;
+  /// c_obj times the largest cost of an object at a point.
+  [[nodiscard]] double weighed_cost(std::size_t person, Point at, double at_s) const;
   void step_one(const State& now, State& next, std::size_t person, Point target) const;
 
   const Landscape* landscape_;

@@ -54,7 +54,7 @@ ProposedSwarm::State ProposedSwarm::begin() const {
   State out;
   out.position = out.best = task.from;
   out.velocity.resize(task.people());
-  out.best_worst.assign(task.people(), 1);
+  out.best_weighed.assign(task.people(), 1);
   out.place = landscape_->first_places();
   out.rest_m.resize(task.people());
   out.heading_for.resize(task.people());
@@ -73,7 +73,7 @@ ProposedSwarm::State ProposedSwarm::begin() const {
       out.direction[p] = {std::cos(angle), std::sin(angle)};
     }
   });
-  if (!knows_target_) out.crowd_best.improve(*landscape_, out.best, out.best_worst, out.place, shifts);
+  if (!knows_target_) out.crowd_best.improve(*landscape_, out.best, out.best_weighed, out.place, shifts);
   return out;
 }
 
@@ -89,7 +89,7 @@ void ProposedSwarm::step(const State& now, State& next) const {
     for (std::size_t p = first; p < last; ++p) wishes[p] = choose(turn, next, p, near);
   });
   settle(turn, wishes, next);
-  if (!knows_target_) next.crowd_best.improve(*landscape_, next.best, next.best_worst, next.place, shifts);
+  if (!knows_target_) next.crowd_best.improve(*landscape_, next.best, next.best_weighed, next.place, shifts);
 }
 
 double ProposedSwarm::avoid(Point at, Point heading_for, double rest_m) const {
@@ -144,8 +144,11 @@ ProposedSwarm::Option ProposedSwarm::judge(const Turn& turn, const Walker& walke
     const Approach approach = closest_approach({walker.at, to}, {disc.from, disc.to});
     out.disc_m = std::min(out.disc_m, approach.distance_m - keep_m);
   }
-  out.worst = std::max(object_cost(squared), landscape_->ground_cost(to));
-  out.value = landscape_->value(walker.avoid, out.worst, distance(to, walker.heading_for) + walker.rest_m);
+  const double ground = landscape_->ground_cost(to);
+  const double objects = object_cost(squared);
+  out.worst = std::max(objects, ground);
+  out.weighed = std::max(walker.avoid * objects, landscape_->options().avoid * ground);
+  out.value = landscape_->value(out.weighed, distance(to, walker.heading_for) + walker.rest_m);
   return out;
 }
 
@@ -193,7 +196,7 @@ ProposedSwarm::Intention ProposedSwarm::choose(const Turn& turn, const State& ne
   Option stay = judge(turn, walker, walker.at);
   stay.allowed = true;
   Rng rng = Rng(task.seed).split(p).split(now.tick + 1);
-  Intention out{walker.at, now.direction[p], stay.worst, rng.uniform(), better_place(turn, walker)};
+  Intention out{walker.at, now.direction[p], stay.weighed, rng.uniform(), better_place(turn, walker)};
   const double r1 = rng.uniform();
   const double r2 = rng.uniform();
   const bool flees = turn.around.threatens(p, walker.at);
@@ -221,7 +224,7 @@ ProposedSwarm::Intention ProposedSwarm::choose(const Turn& turn, const State& ne
   }
   if (!taken.allowed || (!taken.free() && taken.disc_m <= stay.disc_m)) return out;
   out.to = taken.to;
-  out.worst = taken.worst;
+  out.weighed = taken.weighed;
   out.direction = unit(taken.to - walker.at);
   return out;
 }
@@ -278,16 +281,15 @@ void ProposedSwarm::settle(const Turn& turn, std::span<const Intention> wishes, 
       if (other != p && wishes[other].exchange == p) {
         next.place[p] = now.place[other];
         next.best[p] = next.position[p];
-        next.best_worst[p] = wish.worst;
+        next.best_weighed[p] = wish.weighed;
         continue;
       }
-      const double weight = avoid(now.position[p], next.heading_for[p], next.rest_m[p]);
-      const auto value = [&](double worst, Point at) {
-        return landscape_->value(weight, worst, distance(at, next.heading_for[p]) + next.rest_m[p]);
+      const auto value = [&](double weighed, Point at) {
+        return landscape_->value(weighed, distance(at, next.heading_for[p]) + next.rest_m[p]);
       };
-      if (!goes || value(wish.worst, wish.to) > value(now.best_worst[p], next.best[p])) continue;
+      if (!goes || value(wish.weighed, wish.to) > value(now.best_weighed[p], next.best[p])) continue;
       next.best[p] = wish.to;
-      next.best_worst[p] = wish.worst;
+      next.best_weighed[p] = wish.weighed;
     }
   });
 }

@@ -25,7 +25,7 @@ class ProposedSwarm {
   struct State : Crowd {
     std::vector<Point> direction;      ///< D of Eq. 6, of length 1
     std::vector<Point> best;           ///< P_BLS on this piece of the way, m
-    std::vector<double> best_worst;    ///< the largest cost of an object there
+    std::vector<double> best_weighed;  ///< c_obj times the largest cost of an object there
     std::vector<Point> heading_for;    ///< where the way to the target goes straight to, m
     std::vector<double> rest_m;        ///< of the way from there; 0: it is the target
     std::vector<std::uint32_t> place;  ///< of each person, a permutation
@@ -62,6 +62,7 @@ class ProposedSwarm {
   struct Option {
     Point to;
     double worst = 0;      ///< cost of the nearest object, the ground included
+    double weighed = 0;    ///< the same, by c_obj
     double value = 0;      ///< Eq. 9
     bool allowed = false;  ///< touches nobody, and nothing that stands
     double disc_m = 0;     ///< how far it stays off everything that moves, beyond what it has to; negative: too near
@@ -70,7 +71,7 @@ class ProposedSwarm {
   struct Intention {
     Point to;
     Point direction;
-    double worst = 0;
+    double weighed = 0;
     double priority = 0;
     std::uint32_t exchange = 0;  ///< whose place she would rather have; her own number: nobody's
   };

@@ -56,8 +56,9 @@ void Surroundings::look(std::size_t person, std::vector<Near>& out) const {
 
 bool Surroundings::threatens(std::size_t person, Point at) const {
   return std::any_of(discs_.begin(), discs_.end(), [&](const Disc& disc) {
-    const double both_m = disc.radius_m + landscape_->scope_m(person);
-    return squared_length(at - nearest_on(at, disc.to, disc.ahead)) < both_m * both_m;
+    // Room for one more beside it: who only just is not in its way stands in the way of those who are.
+    const double clear_m = disc.radius_m + 3 * landscape_->scope_m(person);
+    return squared_length(at - nearest_on(at, disc.to, disc.ahead)) < clear_m * clear_m;
   });
 }
 

@@ -36,7 +36,7 @@ class Surroundings {
   /// Everybody who matters to a person within this step, in the neighbours' order.
   void look(std::size_t person, std::vector<Near>& out) const;
   [[nodiscard]] const std::vector<Disc>& discs() const { return discs_; }
-  /// Whether something that moves will come over a place soon.
+  /// Whether something that moves will come over a place soon, or so near that others need the place.
   [[nodiscard]] bool threatens(std::size_t person, Point at) const;
   /// |P - Q|^2 / sigma^2 of the nearest of all objects: the exponent of max Cost(P, o) in Eq. 9.
   [[nodiscard]] double nearest_squared(std::size_t person, Point at, const std::vector<Near>& near) const;

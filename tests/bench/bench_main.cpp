@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   register_assignment(effort);
   register_planning(effort);
   register_shows(effort);
+  register_motion(effort);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

@@ -27,6 +27,7 @@ struct Effort {
 void register_assignment(const Effort& effort);
 void register_planning(const Effort& effort);
 void register_shows(const Effort& effort);
+void register_motion(const Effort& effort);
 
 /// The instances and the pictures as files for peers in other languages (tests/bench/peers.py).
 void write_assignment_instances(const std::string& folder);

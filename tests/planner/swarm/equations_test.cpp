@@ -48,8 +48,8 @@ TEST(SwarmEquations, CostFallsWithTheSquareOfDistanceByBothScopes) {
 
 TEST(SwarmEquations, ObjectiveAddsTheWorstObjectAndTheInverseOfTheTarget) {
   // (9): 2 x 0.25 + 1 / exp(-0.5)
-  EXPECT_NEAR(objective(2, 0.25, 0.5), 0.5 + 1.6487212707001282, 1e-15);
-  EXPECT_EQ(objective(1, 0, 0), 1) << "on the target, with nothing around";
+  EXPECT_NEAR(objective(2 * 0.25, 0.5), 0.5 + 1.6487212707001282, 1e-15);
+  EXPECT_EQ(objective(0, 0), 1) << "on the target, with nothing around";
 }
 
 TEST(SwarmEquations, AcceptanceHasAHardBoundaryWhereBothScopesMeet) {

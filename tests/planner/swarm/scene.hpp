@@ -59,7 +59,7 @@ class Scene {
     return *this;
   }
   Scene& terrain(Terrain terrain) {
-    terrain_ = std::move(terrain);
+    terrain_ = std::make_unique<Terrain>(std::move(terrain));
     lay_floor();
     return *this;
   }
@@ -77,14 +77,11 @@ class Scene {
   [[nodiscard]] const Stage& stage() const { return stage_; }
 
  private:
-  void lay_floor() {
-    floor_ = std::make_unique<MotionFloor>(*ways_, moving_, tempo_, tempo_.at(1),
-                                           terrain_.grey.empty() ? nullptr : &terrain_);
-  }
+  void lay_floor() { floor_ = std::make_unique<MotionFloor>(*ways_, moving_, tempo_, tempo_.at(1), terrain_.get()); }
 
   Stage stage_;
-  TempoMap tempo_;  ///< 120 a minute: count n is at (n - 1) / 2 s
-  Terrain terrain_;
+  TempoMap tempo_;                    ///< 120 a minute: count n is at (n - 1) / 2 s
+  std::unique_ptr<Terrain> terrain_;  ///< level where nothing
   std::vector<MovingObstacle> moving_;
   std::unique_ptr<Ways> ways_;
   std::unique_ptr<MotionFloor> floor_;
