@@ -9,6 +9,7 @@ FOOTLIGHT_FULL=1 runs the long forms.
 import argparse
 import csv
 import hashlib
+import glob
 import json
 import os
 import shutil
@@ -116,6 +117,12 @@ class Shows(Case):
     def test_vine_is_planned_and_judged_well(self):
         measured = self.assert_judged_well(os.path.join(ROOT, "shows/vine/show.yaml"), 900)
         self.assertGreaterEqual(measured["min_clearance_m"], 0.5)
+
+    def test_scenarios_of_lin_2007_are_planned_judged_and_played(self):
+        for show in sorted(glob.glob(os.path.join(ROOT, "shows/lin-*/show.yaml"))):
+            with self.subTest(os.path.basename(os.path.dirname(show))):
+                self.assert_judged_well(show, 40 if "corners" in show else 20)
+                footlight("dryrun", show, "--plan", self.path("show.plan"))
 
     def test_vine_over_cells_is_judged_well_and_lights_its_markers(self):
         shutil.copytree(os.path.join(ROOT, "shows/vine"), self.path("vine"), ignore=shutil.ignore_patterns("*.plan", "*.stages"))
