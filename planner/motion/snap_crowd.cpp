@@ -162,13 +162,19 @@ class CrowdSnapper {
     return cells;
   }
 
-  /// Pairs of different kinds that come too near to each other on the way to instant k.
+  /// Pairs of different kinds that come too near to each other on the way to instant k, and from there to the places at
+  /// the end when these are next.
   [[nodiscard]] std::vector<NearPair> conflicts(std::size_t k, const std::vector<CellIndex>& cells) const {
     if (task_.kind.empty() || task_.clearance_m <= 0) return {};
+    std::vector<NearPair> close = conflicts(out_.cells[k - 1], cells);
+    if (task_.to.empty() || k + 2 < task_.at_s.size()) return close;
+    const std::vector<NearPair> then = conflicts(cells, task_.to);
+    close.insert(close.end(), then.begin(), then.end());
+    return close;
+  }
+  [[nodiscard]] std::vector<NearPair> conflicts(std::span<const CellIndex> from, std::span<const CellIndex> to) const {
     std::vector<Walk> walks;
-    for (std::size_t p = 0; p < cells.size(); ++p) {
-      walks.push_back({grid_.centre(out_.cells[k - 1][p]), grid_.centre(cells[p])});
-    }
+    for (std::size_t p = 0; p < from.size(); ++p) walks.push_back({grid_.centre(from[p]), grid_.centre(to[p])});
     std::vector<NearPair> close = near_pairs(walks, task_.clearance_m);
     std::erase_if(close, [&](const NearPair& pair) { return task_.kind[pair.a] == task_.kind[pair.b]; });
     return close;

@@ -10,7 +10,6 @@
 #include <tbb/global_control.h>
 
 #include "core/motion.hpp"
-#include "core/rng.hpp"
 #include "planner/plan_show.hpp"
 #include "planner/validate.hpp"
 #include "tests/planner/small_show.hpp"
@@ -284,19 +283,24 @@ TEST(MotionSection, SomethingThatEndsOnItsPlacesIsAnError) {
 }
 
 TEST(MotionSection, ModelsFollowOneAnotherInOneShow) {
-  // A film, a model, another one back, a list: one track for everybody, and other hands find nothing wrong.
+  // A film, srd, collective, a list: one track for everybody, and other hands find nothing wrong.
   Show show = show_with(40, GridKind::square, 30, 20);
   Section film = section_of("film", test::video(), 1, 60, 0, 31);
   show.sections.push_back(film);
-  Rng rng(3);
-  add_motion(show, "there", listed(cells_in(show.stage.grid, "C3:L6")), 61, 80);
-  add_motion(show, "back", listed(cells_in(show.stage.grid, "R12:AA15")), 145, 80);
+  Motion srd;
+  srd.options = SrdOptions{};
+  Motion collective;
+  collective.options = CollectiveOptions{};
+  add_motion(show, "there", listed(cells_in(show.stage.grid, "C3:L6")), 61, 80, srd);
+  add_motion(show, "back", listed(cells_in(show.stage.grid, "R12:AA15")), 145, 80, collective);
   show.sections.push_back(section_of("list", listed(cells_in(show.stage.grid, "K8:T11")), 290, 0, 8, 34));
   std::vector<std::optional<Film>> films(4);
   films[0] = tests::film_of(30, [](int f) { return tests::disc(80, 60, 25 + f, 30, 18); });
   const auto planned = plan_show(show, films);
   ASSERT_TRUE(planned) << planned.error().message;
   EXPECT_TRUE(planned->plan.valid) << testing::PrintToString(planned->refusal);
+  EXPECT_EQ(sorted(planned->plan.formations[planned->plan.formations.size() - 2].cells),
+            sorted(cells_in(show.stage.grid, "R12:AA15")));
   for (const auto& track : planned->plan.tracks) EXPECT_EQ(track.back().time, show.tempo.at(298));
   if (!tests::OutsideJudge::missing().empty()) return;
   const tests::OutsideJudge outside;
