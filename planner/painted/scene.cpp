@@ -12,6 +12,7 @@
 
 #include "planner/formation/placement.hpp"
 #include "planner/painted/gradient_vector_flow.hpp"
+#include "planner/painted/lattice_turns.hpp"
 #include "planner/painted/seats_in_shape.hpp"
 #include "planner/painted/way_field.hpp"
 #include "planner/parallel.hpp"
@@ -342,7 +343,7 @@ class SceneReader {
     return std::nullopt;
   }
 
-  /// One map for each shape; a party's maps have one lattice, as wide to deep as its shapes are in the mean.
+  /// One map for each shape; a party's maps have one lattice, as wide to deep as its first shape.
   bool place_people() {
     struct Job {
       std::size_t party;
@@ -350,9 +351,11 @@ class SceneReader {
     };
     std::vector<Job> jobs;
     std::vector<Lattice> lattices;
+    std::vector<std::vector<LatticeTurn>> turns;
     for (std::size_t p = 0; p < out_.parties.size(); ++p) {
       PaintedScene::Party& party = out_.parties[p];
-      lattices.emplace_back(party.people, mean_aspect(party));
+      lattices.emplace_back(party.people, aspect(party.shapes.front()));
+      turns.push_back(lattice_turns(party, lattices.back()));
       party.places.resize(party.shapes.size());
       for (std::size_t s = 0; s < party.shapes.size(); ++s) jobs.push_back({p, s});
     }
@@ -364,6 +367,7 @@ class SceneReader {
       task.lattice = &lattices[jobs[j].party];
       task.iterations = options_.iterations;
       task.seed = task_.seed;
+      task.turn = turns[jobs[j].party][s];
       std::vector<Point> places = sodm(task);
       for (Point& at : places) at = out_.floor.to_floor(at);
       const bool first = s == 0;
@@ -375,27 +379,6 @@ class SceneReader {
       party.places[s] = std::move(places);
     });
     return whole;
-  }
-
-  static double mean_aspect(const PaintedScene::Party& party) {
-    double sum = 0;
-    for (const PixelSet& shape : party.shapes) {
-      int left = shape.width;
-      int right = 0;
-      int top = shape.height;
-      int bottom = 0;
-      for (int y = 0; y < shape.height; ++y) {
-        for (int x = 0; x < shape.width; ++x) {
-          if (shape.at(x, y) == 0) continue;
-          left = std::min(left, x);
-          right = std::max(right, x);
-          top = std::min(top, y);
-          bottom = std::max(bottom, y);
-        }
-      }
-      sum += std::log(double(right - left + 1) / (bottom - top + 1));
-    }
-    return std::exp(sum / static_cast<double>(party.shapes.size()));
   }
 
   const SceneTask& task_;

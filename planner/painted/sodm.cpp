@@ -34,7 +34,7 @@ class Map {
       if (shape_.cells[i] != 0) painted_.push_back(i);
     }
     FL_CHECK(!painted_.empty());
-    begin();
+    w_ = spread_over(shape_, lattice_, task.turn);
   }
 
   std::vector<Point> run() {
@@ -52,21 +52,6 @@ class Map {
   }
 
  private:
-  /// The lattice spread over the shape's bounding box: maps of one lattice in several shapes lie the same way round.
-  void begin() {
-    Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    Point high{0, 0};
-    for (const std::size_t at : painted_) {
-      const Point p = middle(at);
-      low = {std::min(low.x, p.x - 0.5), std::min(low.y, p.y - 0.5)};
-      high = {std::max(high.x, p.x + 0.5), std::max(high.y, p.y + 0.5)};
-    }
-    for (const Point at : lattice_.places()) {
-      w_.push_back(
-          {low.x + at.x / lattice_.width() * (high.x - low.x), low.y + at.y / lattice_.rows() * (high.y - low.y)});
-    }
-  }
-
   [[nodiscard]] Point middle(std::size_t pixel) const {
     const auto width = static_cast<std::size_t>(shape_.width);
     return {static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5};
@@ -192,6 +177,28 @@ Lattice::Lattice(int people, double aspect) {
 double ideal_spacing(const PixelSet& shape, int people) {
   const double area = static_cast<double>(count(shape));
   return std::sqrt(2 / std::numbers::sqrt3 * area / people);
+}
+
+std::vector<Point> spread_over(const PixelSet& shape, const Lattice& lattice, LatticeTurn turn) {
+  Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Point high{0, 0};
+  for (int y = 0; y < shape.height; ++y) {
+    for (int x = 0; x < shape.width; ++x) {
+      if (shape.at(x, y) == 0) continue;
+      low = {std::min(low.x, double(x)), std::min(low.y, double(y))};
+      high = {std::max(high.x, x + 1.0), std::max(high.y, y + 1.0)};
+    }
+  }
+  std::vector<Point> out;
+  for (const Point at : lattice.places()) {
+    double u = at.x / lattice.width();
+    double v = at.y / lattice.rows();
+    if (turn.transposed) std::swap(u, v);
+    if (turn.mirrored_x) u = 1 - u;
+    if (turn.mirrored_y) v = 1 - v;
+    out.push_back({low.x + u * (high.x - low.x), low.y + v * (high.y - low.y)});
+  }
+  return out;
 }
 
 std::vector<Point> sodm(const SodmTask& task) { return Map(task).run(); }

@@ -30,6 +30,15 @@ class Lattice {
   std::vector<std::pair<int, int>> neighbours_;
 };
 
+/// One of the eight ways in which a lattice lies on a shape at first: as it is, or its rows as columns, then mirrored.
+struct LatticeTurn {
+  bool transposed = false;
+  bool mirrored_x = false;
+  bool mirrored_y = false;
+};
+/// A lattice spread evenly over a shape's bounding box, pixels.
+[[nodiscard]] std::vector<Point> spread_over(const PixelSet& shape, const Lattice& lattice, LatticeTurn turn);
+
 struct SodmTask {
   const PixelSet* shape = nullptr;  ///< at least one pixel
   const Lattice* lattice = nullptr;
@@ -37,6 +46,7 @@ struct SodmTask {
   std::uint64_t seed = 1;
   bool fit_shape = true;   ///< v_a of Eq. 1-2; without it and the next it is a plain self-organising map
   bool keep_apart = true;  ///< v_d of Eq. 1
+  LatticeTurn turn{};      ///< how the map lies at first; it stays so
 };
 
 /// Places for people in a painted shape: a self-organising map with distance.

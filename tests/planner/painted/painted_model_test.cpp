@@ -136,6 +136,26 @@ TEST(PaintedModel, PeopleKeepApartOnTheWayBetterThanWithoutParticles) {
   EXPECT_LT(with, 0.6 * without);
 }
 
+TEST(PaintedScene, WhoLeavesFirstOnAWayThatTurnsBackComesFirst) {
+  PaintedShow one;
+  one.painter.box(0, 0, 120, 80, {255, 255, 255});
+  one.painter.box(4, 36, 28, 76, one.options.paint[0].colour);
+  one.painter.box(92, 36, 116, 76, one.options.paint[1].colour);
+  one.painter.stroke({{16, 34}, {16, 10}, {104, 10}, {104, 34}}, 4, {255, 150, 150}, {110, 20, 20});
+  const auto scene = one.read();
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto& places = scene->parties[0].places;
+  // Up and over: who is upstage in the first shape is downstage in the second, who is on the left stays outside.
+  double turned_y = 0;
+  double turned_x = 0;
+  for (std::size_t i = 0; i < 40; ++i) {
+    turned_y += (places[0][i].y - 6) * (places[1][i].y - 6);
+    turned_x += (places[0][i].x + 11) * (places[1][i].x - 11);
+  }
+  EXPECT_LT(turned_y, -100);
+  EXPECT_LT(turned_x, -20);
+}
+
 TEST(PaintedModel, IsTheSameForAnyNumberOfThreads) {
   PaintedShow one;
   one.show = test::show_with(160, GridKind::square, 30, 20);
