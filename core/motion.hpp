@@ -10,6 +10,7 @@
 #include "core/grid.hpp"
 #include "core/index.hpp"
 #include "core/motion/collective_options.hpp"
+#include "core/motion/painted_options.hpp"
 #include "core/motion/srd_options.hpp"
 #include "core/motion/swarm_options.hpp"
 
@@ -34,7 +35,7 @@ struct MovingObstacle {
 };
 
 /// Parameters of the models of motion, each in its own header.
-using MotionOptions = std::variant<std::monostate, CollectiveOptions, SrdOptions, SwarmOptions>;
+using MotionOptions = std::variant<std::monostate, CollectiveOptions, SrdOptions, SwarmOptions, PaintedOptions>;
 
 /// How a section moves people that has a model of motion: from where the section before leaves them to the formation of
 /// its own, over the whole duration.

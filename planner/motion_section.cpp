@@ -13,6 +13,8 @@
 #include "planner/motion/models.hpp"
 #include "planner/motion/snap_crowd.hpp"
 #include "planner/motion/swept_discs.hpp"
+#include "planner/painted/scene.hpp"
+#include "planner/painted/walls.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -45,10 +47,8 @@ class MotionSection {
         progress_(progress) {}
 
   Result<SectionPlan> run(const std::optional<Film>& film) {
-    auto plan = plan_source(show_, index_, film, ways_, nullptr, progress_);
+    auto plan = find_places(film);
     if (!plan) return plan;
-    to_ = places_of(plan->stations.front());
-    if (auto error = find_beginning()) return *error;
     if (auto error = check_paths()) return *error;
     if (auto error = choose_instants()) return *error;
     const MotionFloor floor(ways_, motion_.obstacles, show_.tempo, show_.tempo.at(section_.start_count),
@@ -79,6 +79,32 @@ class MotionSection {
     if (error.kind != ErrorKind::input) return error;
     return input_error(
         message_at(show_, section_.position, fmt::format("sections[{}].planner", index_.value()), error.message, ""));
+  }
+
+  /// Where people begin and end. @return the plan of the source, without its stations
+  Result<SectionPlan> find_places(const std::optional<Film>& film) {
+    if (const auto* painted = std::get_if<PaintedOptions>(&motion_.options)) return read_painted(*painted, film);
+    auto plan = plan_source(show_, index_, film, ways_, nullptr, progress_);
+    if (!plan) return plan;
+    to_ = places_of(plan->stations.front());
+    if (auto error = find_beginning()) return *error;
+    return plan;
+  }
+
+  /// A painting gives the beginning and the end.
+  Result<SectionPlan> read_painted(const PaintedOptions& options, const std::optional<Film>& film) {
+    if (!film || film->rgb.empty()) return internal_error("the painting of section '" + section_.name + "' is missing");
+    const RgbPicture picture = picture_of(*film);
+    auto scene = read_painting({&show_, index_, &options, &picture, &ways_, motion_.seed}, progress_);
+    if (!scene) return scene.error();
+    painting_.emplace(std::move(*scene));
+    const Groups groups = show_.groups.empty() ? Groups{} : painting_->groups();
+    from_ = {painting_->begin_cells(), groups, false};
+    to_ = {painting_->end_cells(), groups, false};
+    SectionPlan plan;
+    plan.section.reserve = show_.stage.reserve;
+    plan.section.notes = painting_->notes;
+    return plan;
   }
 
   /// Groups are known where the formation says whose places its cells are, or whose in person.
@@ -195,6 +221,7 @@ class MotionSection {
     task.at_s = instants_.at_s;
     task.paths = motion_.paths;
     task.floor = &floor;
+    task.painting = painting_ ? &*painting_ : nullptr;
     task.seed = motion_.seed;
     return task;
   }
@@ -287,6 +314,10 @@ class MotionSection {
       station.groups = from_.groups;
       station.follows = true;
       station.exact = station.key = last && !goal_cells_.empty();
+      if (k == 0 && painting_) {
+        station.follows = false;
+        station.exact = station.key = true;
+      }
       if (last && to_.named) {
         station.cells = to_.cells;
         station.groups.clear();
@@ -322,6 +353,7 @@ class MotionSection {
   Places to_;
   std::vector<CellIndex> goal_cells_;  ///< of each person; empty: wherever the model ends
   MarkInstants instants_;
+  std::optional<PaintedScene> painting_;
 };
 
 }  // namespace

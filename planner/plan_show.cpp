@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "planner/casting.hpp"
+#include "planner/painted/walls.hpp"
 #include "planner/parallel.hpp"
 #include "planner/plan_notes.hpp"
 #include "planner/plan_section.hpp"
@@ -34,6 +35,11 @@ Ways ways_of(const Show& show, const WidePeople& wide) {
 bool has_slow_people(const Show& show) {
   return std::any_of(show.performers.begin(), show.performers.end(),
                      [](const Performer& performer) { return performer.max_speed_mps > 0; });
+}
+
+bool has_paintings(const Show& show) {
+  return std::any_of(show.sections.begin(), show.sections.end(),
+                     [](const Section& section) { return std::holds_alternative<PaintingSource>(section.from); });
 }
 
 class ShowPlanner {
@@ -286,14 +292,16 @@ class ShowPlanner {
 
 Result<Planned> plan_show(const Show& show, const std::vector<std::optional<Film>>& films, const Progress& progress,
                           const Reuse& reuse) {
-  auto planned = ShowPlanner(show, films, progress, reuse).run();
+  const auto walled = with_painted_walls(show, films);
+  auto planned = ShowPlanner(walled ? *walled : show, films, progress, reuse).run();
   if (planned && reuse.stages != nullptr) reuse.stages->forget_unused();
   return planned;
 }
 
 std::vector<bool> formations_known(const Show& show, const Reuse& reuse) {
   std::vector<bool> out(show.sections.size(), false);
-  if (show.performers.empty()) return out;
+  // Nobody knows the walls of a painting before it is decoded.
+  if (show.performers.empty() || has_paintings(show)) return out;
   const Ways ways = ways_of(show, WidePeople(show));
   Show limits = show;
   for (Performer& performer : limits.performers) performer.max_speed_mps = 0;

@@ -22,6 +22,8 @@ namespace footlight::planner {
                                             const Progress& progress);
 [[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, const CollectiveOptions& options,
                                             const Progress& progress);
+[[nodiscard]] Result<Trajectory> move_crowd(const MotionTask& task, const PaintedOptions& options,
+                                            const Progress& progress);
 /// @}
 
 /// By the model that the options are of.

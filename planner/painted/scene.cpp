@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "planner/formation/placement.hpp"
 #include "planner/painted/gradient_vector_flow.hpp"
 #include "planner/painted/lattice_turns.hpp"
 #include "planner/painted/seats_in_shape.hpp"
+#include "planner/painted/walls.hpp"
 #include "planner/painted/way_field.hpp"
 #include "planner/parallel.hpp"
 #include "planner/plan_section.hpp"
@@ -21,8 +21,6 @@
 namespace footlight::planner {
 namespace {
 
-constexpr int kLooks = 7;                  // points a side of a cell
-constexpr double kCoveredShare = 0.1;      // of a cell's points: it is blocked
 constexpr double kBackgroundReach_m = 2;   // of its field
 constexpr double kLeastStrokeShare = 0.1;  // of the largest piece of its colour
 constexpr double kUnknownShare = 0.002;    // of the picture: worth a note
@@ -40,11 +38,11 @@ class SceneReader {
 
   Result<PaintedScene> run() {
     if (auto error = find_parties()) return *error;
-    lay_down();
+    lay_floor();
     const Raster<std::int16_t> marks = read_marks(*task_.picture, options_);
     if (auto error = check_colours(marks)) return *error;
     on_floor_ = marks_on_floor(*task_.picture, marks, out_.picture, out_.floor, out_.width, out_.height);
-    read_background(marks);
+    read_background();
     for (PaintedScene::Party& party : out_.parties) {
       if (auto error = read_shapes(party)) return *error;
       if (auto error = read_strokes(party)) return *error;
@@ -72,14 +70,10 @@ class SceneReader {
     return group ? "group '" + show_.groups[group->at()].name + "'" : "who is in no painted group";
   }
 
-  void lay_down() {
-    const Box room = picture_floor(show_.stage);
+  void lay_floor() {
     out_.picture_width = task_.picture->width;
     out_.picture_height = task_.picture->height;
-    const double pixel = std::min(room.width() / out_.picture_width, room.height() / out_.picture_height);
-    out_.picture = {{(room.x0 + room.x1) / 2 - out_.picture_width * pixel / 2,
-                     (room.y0 + room.y1) / 2 + out_.picture_height * pixel / 2},
-                    pixel};
+    out_.picture = lay_down(show_.stage, out_.picture_width, out_.picture_height);
     Point low = grid_.centre(CellIndex(0));
     Point high = low;
     for (int i = 0; i < grid_.size(); ++i) {
@@ -128,7 +122,7 @@ class SceneReader {
     return std::nullopt;
   }
 
-  void read_background(const Raster<std::int16_t>& marks) {
+  void read_background() {
     out_.background = PixelSet(out_.width, out_.height);
     if (options_.background != PaintedOptions::Background::none) {
       out_.background = pixels_of(on_floor_.marks, kBackgroundMark);
@@ -137,28 +131,15 @@ class SceneReader {
     out_.background_field =
         background_field(out_.background, repels, std::max(2.0, kBackgroundReach_m / out_.floor.pixel_m));
     Stage stage = show_.stage;
-    for (int i = 0; repels && i < grid_.size(); ++i) {
-      const CellIndex cell = CellIndex::of(i);
-      const bool blocked = std::binary_search(stage.blocked.begin(), stage.blocked.end(), cell);
-      if (!blocked && covered(marks, grid_.centre(cell))) out_.covered.push_back(cell);
-    }
+    const auto walls = covered_cells(stage, *task_.picture, options_);
+    std::set_difference(walls.begin(), walls.end(), stage.blocked.begin(), stage.blocked.end(),
+                        std::back_inserter(out_.covered));
     std::vector<CellIndex> all;
     std::merge(stage.blocked.begin(), stage.blocked.end(), out_.covered.begin(), out_.covered.end(),
                std::back_inserter(all));
     stage.blocked = std::move(all);
     out_.ways.emplace(stage, task_.ways->keep_m());
     mark_blocked();
-  }
-
-  [[nodiscard]] bool covered(const Raster<std::int16_t>& marks, Point centre) const {
-    int grey = 0;
-    for (int k = 0; k < kLooks * kLooks; ++k) {
-      const Point offset{(k % kLooks + 0.5) / kLooks - 0.5, (k / kLooks + 0.5) / kLooks - 0.5};
-      const Point pixel = out_.picture.to_pixel(centre + grid_.pitch_m() * offset);
-      if (!marks.contains(pixel)) continue;
-      grey += marks.at(static_cast<int>(pixel.x), static_cast<int>(pixel.y)) == kBackgroundMark ? 1 : 0;
-    }
-    return grey > kCoveredShare * kLooks * kLooks;
   }
 
   /// Pixels in which no cell's people could stand: those of cells that cannot be stood on. O(pixels)
