@@ -32,6 +32,7 @@ constexpr double kSoon = 0.5;
 /// How often cells are chosen again where ways conflict, and what a conflict costs each time, in squared pitches.
 constexpr int kRounds = 24;
 constexpr double kToll = 0.7;
+constexpr double kShorter = 0.85;
 /// No way home is counted as longer.
 constexpr double kFarHome_m = 1e6;
 
@@ -130,7 +131,14 @@ class CrowdSnapper {
     const bool leads_home = beyond_m(k, person, near) <= 0;
     if (leads_home && distance(here, wanted) <= longest_m && ways_to(k).straight(here, wanted)) return wanted;
     const Point goal = leads_home ? wanted : grid_.centre(task_.to[person]);
-    return ways_to(k).toward(here, goal, longest_m).at;
+    // Around a corner only as far as can be walked straight; the first bend of the way is a cell.
+    double walk_m = longest_m;
+    Point at = ways_to(k).toward(here, goal, walk_m).at;
+    while (walk_m > pitch_ / 2 && !ways_to(k).straight(here, at)) {
+      walk_m *= kShorter;
+      at = ways_to(k).toward(here, goal, walk_m).at;
+    }
+    return at;
   }
 
   std::vector<Choice> choices(std::size_t k, std::uint32_t person, double radius_m) {
