@@ -136,6 +136,30 @@ std::vector<MovingObstacle> read_obstacles(MappingReader& section) {
   return out;
 }
 
+/// A painting and its model go together.
+void read_painting(ShowReading& show, MappingReader& section, const Section& out, Motion& motion) {
+  auto* painted = std::get_if<PaintedOptions>(&motion.options);
+  const bool painting = std::holds_alternative<PaintingSource>(out.from);
+  if (painted == nullptr) {
+    refuse(section, {"paint"}, "it goes with model: painted");
+    if (painting) {
+      section.error(section.key_position("from"), section.path("from"), "only `model: painted` follows a painting",
+                    "model: painted, or another source");
+    }
+    return;
+  }
+  refuse(section, {"paths"}, "the strokes of a painting are the paths");
+  painted->paint = read_paint(show, section);
+  if (!painting && section.has("from")) {
+    section.error(section.key_position("from"), section.path("from"), "`model: painted` follows a painting",
+                  "from: {painting: FILE.png}");
+  }
+  if (!section.has("paint")) {
+    section.error(section.position(), section.path("paint"), "the key is missing",
+                  "it says which colour of the painting means what");
+  }
+}
+
 }  // namespace
 
 const std::vector<MotionModel>& motion_models() {
@@ -151,6 +175,8 @@ const std::vector<MotionModel>& motion_models() {
        "Everybody looks for a way of her own to her place or to a target that moves; one cost for targets, obstacles "
        "and people.",
        swarm_listing, read_swarm},
+      {"painted", PlannerModel::painted, "People follow the shapes and strokes of a painting (Kang, Kim 2014).",
+       painted_listing, read_painted},
   };
   return kModels;
 }
@@ -180,6 +206,7 @@ std::vector<Field> motion_fields() {
        .doc = "With a model of motion: another number, another chance.",
        .fallback = "1",
        .range = {0, 2'147'483'647}},
+      paint_field(),
   };
 }
 
@@ -190,7 +217,12 @@ void read_motion(ShowReading& show, MappingReader& section, MappingReader& plann
     refuse(planner, {one.name}, "it goes with model: " + std::string(one.name));
   }
   if (chosen == nullptr) {
-    refuse(section, {"paths", "obstacles", "marks", "seed"}, "it goes with a model of motion: " + names_of_models());
+    refuse(section, {"paths", "obstacles", "marks", "seed", "paint"},
+           "it goes with a model of motion: " + names_of_models());
+    if (std::holds_alternative<PaintingSource>(out.from)) {
+      section.error(section.key_position("from"), section.path("from"), "only `model: painted` follows a painting",
+                    "planner: {model: painted}, or another source");
+    }
     return;
   }
   const std::string name(chosen->name);
@@ -208,6 +240,7 @@ void read_motion(ShowReading& show, MappingReader& section, MappingReader& plann
   }
   auto motion = std::make_shared<Motion>();
   if (auto options = planner.mapping(chosen->name)) motion->options = chosen->read(show, std::move(*options));
+  read_painting(show, section, out, *motion);
   motion->paths = read_paths(show, section);
   motion->obstacles = read_obstacles(section);
   motion->mark_counts = section.quantity("marks");

@@ -30,6 +30,11 @@ struct MotionModel {
 [[nodiscard]] MotionOptions read_collective(ShowReading& show, MappingReader reader);
 [[nodiscard]] const Listing& swarm_listing();
 [[nodiscard]] MotionOptions read_swarm(ShowReading& show, MappingReader reader);
+[[nodiscard]] const Listing& painted_listing();
+[[nodiscard]] MotionOptions read_painted(ShowReading& show, MappingReader reader);
+/// `paint` of a section: what the colours of its painting mean.
+[[nodiscard]] Field paint_field();
+[[nodiscard]] std::vector<Paint> read_paint(ShowReading& show, MappingReader& section);
 
 /// Keys of a section that go with a model of motion, beside `planner`; `paths`, `obstacles`, `marks` and `seed` in this
 /// order.
