@@ -63,6 +63,27 @@ cv::Mat drawn(PangoLayout* layout, const PangoRectangle& ink) {
   return view.clone();
 }
 
+/// Every character by this font or not at all.
+void forbid_other_fonts(PangoLayout* layout) {
+  PangoAttrList* attributes = pango_attr_list_new();
+  pango_attr_list_insert(attributes, pango_attr_fallback_new(FALSE));
+  pango_layout_set_attributes(layout, attributes);
+  pango_attr_list_unref(attributes);
+}
+
+/// Sets the size of the font: a line's height, or less where the text would be too long. @return what is drawn then
+PangoRectangle set_size(PangoLayout* layout, PangoFontDescription* description) {
+  PangoRectangle ink{};
+  for (double size = kLine;;) {
+    pango_font_description_set_absolute_size(description, size * PANGO_SCALE);
+    pango_layout_set_font_description(layout, description);
+    pango_layout_get_pixel_extents(layout, &ink, nullptr);
+    const double longest = std::max(ink.width, ink.height);
+    if (longest <= kLargest) return ink;
+    size *= 0.98 * kLargest / longest;
+  }
+}
+
 }  // namespace
 
 Still draw_text(const std::string& text, const std::string& font) {
@@ -80,21 +101,8 @@ Still draw_text(const std::string& text, const std::string& font) {
   }
   pango_layout_set_text(layout.get(), text.data(), static_cast<int>(text.size()));
   pango_layout_set_alignment(layout.get(), PANGO_ALIGN_CENTER);
-  if (!font.empty()) {
-    PangoAttrList* attributes = pango_attr_list_new();
-    pango_attr_list_insert(attributes, pango_attr_fallback_new(FALSE));
-    pango_layout_set_attributes(layout.get(), attributes);
-    pango_attr_list_unref(attributes);
-  }
-  PangoRectangle ink{};
-  for (double size = kLine;;) {
-    pango_font_description_set_absolute_size(description.get(), size * PANGO_SCALE);
-    pango_layout_set_font_description(layout.get(), description.get());
-    pango_layout_get_pixel_extents(layout.get(), &ink, nullptr);
-    const double longest = std::max(ink.width, ink.height);
-    if (longest <= kLargest) break;
-    size *= 0.98 * kLargest / longest;
-  }
+  if (!font.empty()) forbid_other_fonts(layout.get());
+  const PangoRectangle ink = set_size(layout.get(), description.get());
   if (const gunichar missing = missing_character(layout.get()); missing != 0) {
     out.status = DecodeStatus::missing_character;
     out.detail = static_cast<std::int64_t>(missing);

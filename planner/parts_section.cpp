@@ -41,6 +41,7 @@ class PartsSection {
   }
 
   Result<SectionPlan> run() {
+    fill_pools();
     if (auto error = count_people()) return *error;
     int frame = 0;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -71,14 +72,17 @@ class PartsSection {
     return pools_.size() > 1 ? "who is in no other part's group" : "the show";
   }
 
-  /// How many people each part has: the numbers that are written, then an even share of who is left.
-  std::optional<Error> count_people() {
+  void fill_pools() {
     for (const Part& part : parts_) pools_[part.group] = 0;
     for (const Performer& performer : show_.performers) {
       const auto named = performer.group ? pools_.find(performer.group) : pools_.end();
       const auto pool = named != pools_.end() ? named : pools_.find(std::nullopt);
       ++(pool != pools_.end() ? pool->second : left_out_);
     }
+  }
+
+  /// How many people each part has: the numbers that are written, then an even share of who is left.
+  std::optional<Error> count_people() {
     std::map<Pool, int> open;  // parts that share what is left
     people_.resize(parts_.size());
     for (std::size_t k = 0; k < parts_.size(); ++k) {

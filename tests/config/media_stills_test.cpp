@@ -81,17 +81,15 @@ TEST_F(Stills, APaintingThatIsNoneIsRefused) {
 }
 
 TEST_F(Stills, ABombOfAPictureIsRefused) {
-  // A valid PNG of 30000 x 30000 black pixels is a few kilobytes; the head alone says so.
-  const cv::Mat image(1, 30000, CV_8U, cv::Scalar(0));
-  cv::imwrite(file("wide.png"), image);
-  MediaLimits limits;
-  limits.max_pixels = 20000;
-  const auto film = decode_painting({file("wide.png")}, limits);
-  ASSERT_FALSE(film);
-  EXPECT_EQ(
-      folder_.without_folder(film.error().message),
-      "'wide.png' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM, PGM or SVG, of 1 to "
-      "20000 pixels)");
+  cv::imwrite(file("bomb.png"), cv::Mat(1000, 17000, CV_8U, cv::Scalar(0)));  // 17 million pixels
+  ASSERT_LT(std::filesystem::file_size(file("bomb.png")), 100'000U);
+  const std::string refusal =
+      "'bomb.png' cannot be decoded as an image (a whole file is needed: PNG, JPEG, BMP, PBM, PGM or SVG, of 1 to "
+      "16777216 pixels)";
+  EXPECT_EQ(refused(Picture{file("bomb.png"), {}}), refusal);
+  const auto painting = decode_painting({file("bomb.png")});
+  ASSERT_FALSE(painting);
+  EXPECT_EQ(folder_.without_folder(painting.error().message), refusal);
 }
 
 TEST_F(Stills, LetteringIsWhatTheFontDrawsOfAnyScript) {
