@@ -241,7 +241,7 @@ TEST_F(ShowFile, NamesTheNearestKnownKey) {
       errors_of_stage("{grid: {columns: 4, rows: 3}, clearence: 1 m, colour: x}"),
       "show.yaml:3:38: error: stage.clearence: unknown key (did you mean \"clearance\"?)\n"
       "show.yaml:3:54: error: stage.colour: unknown key (known keys: grid, blocked, obstacles, reserve, clearance, "
-      "max_speed, lag)\n");
+      "max_speed, lag, terrain)\n");
 }
 
 TEST_F(ShowFile, SaysWhereAKeyIsMissing) {
@@ -272,7 +272,7 @@ TEST_F(ShowFile, WantsAllKindsOfValuesWhereTheyBelong) {
       "show.yaml:2:8: error: title: the text is empty (write one, or leave the key out)\n"
       "show.yaml:3:8: error: stage: a single value stands where a mapping belongs (keys: grid, blocked, obstacles, "
       "reserve, "
-      "clearance, max_speed, lag)\n"
+      "clearance, max_speed, lag, terrain)\n"
       "show.yaml:4:13: error: performers: a list stands where a mapping belongs (keys: count, from, groups, "
       "understudies, colour)\n"
       "show.yaml:5:1: error: music: nothing stands where a mapping belongs (keys: tempo, changes, meter, pickup)\n"
