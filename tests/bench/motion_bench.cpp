@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of each continuous model of motion, beside what no such step can do without.
 #include <cmath>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,10 +13,13 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include "planner/collective/social_crowd.hpp"
+#include "planner/collective/timed_ways.hpp"
 #include "planner/motion/crowd.hpp"
 #include "planner/motion/model.hpp"
 #include "planner/motion/neighbours.hpp"
 #include "planner/repair/closest_approach.hpp"
+#include "planner/srd/srd_model.hpp"
 #include "planner/swarm/original.hpp"
 #include "planner/swarm/proposed.hpp"
 #include "tests/bench/job.hpp"
@@ -178,6 +183,25 @@ std::shared_ptr<const Swarm> make_swarm(const MotionTask& task) {
   return {both, &both->swarm};
 }
 
+std::shared_ptr<const planner::srd::SrdModel> make_srd(const MotionTask& task) {
+  auto model = planner::srd::SrdModel::make(task, {});
+  return std::make_shared<const planner::srd::SrdModel>(std::move(model).value());
+}
+
+/// Without sub-groups: everybody on her own timed way.
+std::shared_ptr<const planner::collective::SocialCrowd> make_collective(const MotionTask& task) {
+  using planner::collective::SocialCrowd;
+  using planner::collective::TimedWays;
+  struct Both {
+    TimedWays ways;
+    SocialCrowd crowd;
+    Both(const MotionTask& of, TimedWays made) : ways(std::move(made)), crowd(of, {}, ways, {}) {}
+  };
+  auto ways = TimedWays::make(task, task.to, nullptr, 500);
+  const auto both = std::make_shared<const Both>(task, std::move(ways).value());
+  return {both, &both->crowd};
+}
+
 }  // namespace
 
 void register_motion(const Effort& effort) {
@@ -185,6 +209,8 @@ void register_motion(const Effort& effort) {
   using planner::swarm::ProposedSwarm;
   add_model<ProposedSwarm>(effort, "swarm", 1.8, false, make_swarm<ProposedSwarm>);
   add_model<OriginalSwarm>(effort, "swarm, original", 0.01, true, make_swarm<OriginalSwarm>);
+  add_model<planner::srd::SrdModel>(effort, "srd", 1.0, false, make_srd);
+  add_model<planner::collective::SocialCrowd>(effort, "collective", 1.5, true, make_collective);
 }
 
 }  // namespace footlight::bench

@@ -41,7 +41,7 @@ class Measured:
         self.seconds, self.cpu, self.mb, self.cost, self.error = seconds, cpu, mb, cost, error
 
 
-NAMES = {"generic": "ours, generic instructions", "lemon": "LEMON"}
+NAMES = {"generic": "ours, generic instructions", "lemon": "LEMON", "stream": "bound: state copied", "bound": "bound: copied, sorted, pairs"}
 
 
 def note(text):
@@ -67,7 +67,7 @@ def summary(job, entries):
     def median(field):
         return statistics.median(entry[field] * scale[entry["time_unit"]] for entry in entries)
     # Work on several cores, and on another process, is judged by the clock; all other by the processor's time.
-    clock = re.match("show|replan|validate|measure|decode", job) is not None
+    clock = re.match("show|replan|validate|measure|decode|step", job) is not None
     first = entries[0]
     error = next((entry["error_message"] for entry in entries if entry.get("error_occurred")), None)
     if error:

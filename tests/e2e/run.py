@@ -8,8 +8,8 @@ FOOTLIGHT_FULL=1 runs the long forms.
 """
 import argparse
 import csv
-import hashlib
 import glob
+import hashlib
 import json
 import os
 import shutil
