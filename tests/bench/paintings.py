@@ -169,9 +169,9 @@ def march():
     for k, (colour, brush) in enumerate(zip(colours, strokes)):
         # Four columns side by side: lanes of one curve, each inside the one before.
         lane = 8.2 * k
-        x0, x1 = -47 + lane, -40.4 + lane
+        x0, x1 = -47.4 + lane, -40 + lane
         art.box(x0, 2, x1, 46, lighter(colour, 0.5))
-        x0, x1 = 47 - lane, 40.4 - lane
+        x0, x1 = 47.4 - lane, 40 - lane
         art.box(x1, 2, x0, 46, darker(colour, 0.5))
         outer = 43.7 - lane
         top = 61 - 3.6 * k

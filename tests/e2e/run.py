@@ -124,6 +124,13 @@ class Shows(Case):
                 self.assert_judged_well(show, 40 if "corners" in show else 20)
                 footlight("dryrun", show, "--plan", self.path("show.plan"))
 
+    def test_paintings_of_kang_2014_are_planned_judged_and_played(self):
+        for name, people in (("theatre", 400), ("castle", 600)):
+            with self.subTest(name):
+                show = os.path.join(ROOT, f"shows/kang-{name}/show.yaml")
+                self.assert_judged_well(show, people)
+                footlight("dryrun", show, "--plan", self.path("show.plan"))
+
     def test_vine_over_cells_is_judged_well_and_lights_its_markers(self):
         shutil.copytree(os.path.join(ROOT, "shows/vine"), self.path("vine"), ignore=shutil.ignore_patterns("*.plan", "*.stages"))
         show = self.path("vine", "show.yaml")
