@@ -301,8 +301,8 @@ class MotionSection {
 
   [[nodiscard]] std::vector<Station> stations(const SnappedCrowd& snapped) const {
     std::vector<Station> out;
-    // Where the section before ends people stand already.
-    const bool touches = before_ != nullptr && before_->depart >= instant(0);
+    // Where the section before ends people stand already; a painting has a beginning of its own.
+    const bool touches = !painting_ && before_ != nullptr && before_->depart >= instant(0);
     for (std::size_t k = touches ? 1 : 0; k < snapped.cells.size(); ++k) {
       const bool last = k + 1 == snapped.cells.size();
       Station& station = out.emplace_back();

@@ -76,6 +76,24 @@ TEST(PaintedSection, TakesPeopleFromTheSectionBefore) {
   EXPECT_TRUE(planned->plan.valid);
 }
 
+TEST(PaintedSection, HasItsBeginningWhereTheSectionBeforeTouchesIt) {
+  PaintedShow one;
+  const auto scene = one.read();
+  ASSERT_TRUE(scene);
+  std::vector<CellIndex> begin = scene->begin_cells();
+  std::reverse(begin.begin(), begin.end());
+  const Section lines = test::section_of("lines", CellsSource{"lines.csv", begin, false, {}}, 1, 0, 59, 6);
+  one.show.sections.insert(one.show.sections.begin(), lines);
+  one.show.sections[1].start_count = 60;
+  one.show.sections[1].duration_counts = 100;
+  paint_into(one, 1);
+  const auto planned = plan_show(one.show, {std::nullopt, film_of(one)});
+  ASSERT_TRUE(planned) << planned.error().message;
+  EXPECT_TRUE(planned->plan.valid);
+  EXPECT_EQ(planned->plan.formations[1].count, 60);
+  EXPECT_EQ(planned->plan.formations[1].cells, planned->plan.formations[0].cells);
+}
+
 TEST(PaintedSection, GroupsKeepTheirOwnShapes) {
   PaintedShow one;
   one.show.groups = {{"red", {255, 0, 0}, true}, {"blue", {0, 0, 255}, true}};
