@@ -59,8 +59,9 @@ const Listing& srd_listing() {
            .range = {0, 1}},
           {.key = "room",
            .type = Type::length,
-           .doc = "So far apart people are kept, from centre to centre, where formations are loose enough for others to "
-                  "pass through at that distance; never less than their radii or the clearance ask.",
+           .doc =
+               "So far apart people are kept, from centre to centre, where formations are loose enough for others to "
+               "pass through at that distance; never less than their radii or the clearance ask.",
            .fallback = "1 m",
            .range = {0, 10}},
           {.key = "congestion",

@@ -87,6 +87,11 @@ void SrdModel::Step::plan() {
 void SrdModel::Step::plan_in_formation(std::size_t i, Point destination, Point velocity) {
   destination_[i] = model_.floor_.free_place(destination);
   destination_mps_[i] = velocity;
+  const Point here = now_.position[i];
+  // The formation does not bring back who is out of it, and by steering alone she would be long in coming.
+  if (now_.released[i] != 0 && distance(here, destination) > options_.congestion_m / 2) {
+    destination_mps_[i] = seek(here, destination_[i], velocity, kArrive_s, task_.speed_mps[i]);
+  }
   go_around(i);
 }
 
@@ -203,7 +208,8 @@ Point SrdModel::Step::corrected(std::size_t i) const {
     sum = sum + *one;
     ++active;
   };
-  visit_near(i, [&](std::uint32_t j) { add(separation(me, predicted_[j], model_.radius_m_[i] + model_.radius_m_[j])); });
+  visit_near(i,
+             [&](std::uint32_t j) { add(separation(me, predicted_[j], model_.radius_m_[i] + model_.radius_m_[j])); });
   for (const MotionFloor::Disc& disc : discs_) add(separation(me, disc.centre, model_.radius_m_[i] + disc.radius_m, 1));
   Point to = me;
   if (options_.formation && next_.released[i] == 0) to = to + formation(me, destination_[i], options_.stiffness);

@@ -101,6 +101,28 @@ def plot(found, file):
     file.write_text("\n".join(out + ["</svg>", ""]))
 
 
+def pictures(found, stage_m, file):
+    """Where people walk at four instants, a dot of their group's colour each."""
+    wide, deep = stage_m
+    scale = 370 / wide
+    height = deep * scale
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 {2 * height + 60:.0f}" font-family="sans-serif" font-size="12">',
+           "<desc>made by scripts/son2024</desc>", f'<rect width="760" height="{2 * height + 60:.0f}" fill="white"/>']
+    for n, picture in enumerate(found["pictures"]):
+        left, top = n % 2 * 385 + 5, n // 2 * (height + 28) + 22
+        out.append(f'<text x="{left}" y="{top - 6:.0f}">{picture["at_s"]:.0f} s</text>')
+        out.append(f'<rect x="{left}" y="{top}" width="370" height="{height:.1f}" fill="none" stroke="#ddd"/>')
+        for colour, people in picture["people"].items():
+            dots = "".join(f"M{left + (x + wide / 2) * scale - 0.8:.1f} {top + (deep - y) * scale:.1f}h1.6" for x, y in people)
+            out.append(f'<path d="{dots}" stroke="{colour}" stroke-width="1.6"/>')
+    file.write_text("\n".join(out + ["</svg>", ""]))
+
+
+def stage_of(text):
+    columns, rows, pitch = (float(re.search(key + r": ([0-9.]+)", text)[1]) for key in ("columns", "rows", "pitch"))
+    return columns * pitch, rows * pitch
+
+
 def table1(build):
     rows = ["| people | Son 2024, frames/s | steps/s | without formation, steps/s | ns a person and step | without |", "|---|---|---|---|---|---|"]
     for people in SIZES:
@@ -120,6 +142,8 @@ def main():
         found = followed(build, name)
         recovered += [row(told, model, one) for model, one in found.items()]
         plot(found, ROOT / "docs" / f"son2024-{name[4:]}.svg")
+        stage_m = stage_of((ROOT / "shows" / name / "show.yaml").read_text())
+        pictures(found["formation"], stage_m, ROOT / "docs" / f"{name}.svg")
     page = string.Template((ROOT / "tests/bench/son2024.md.in").read_text())
     (ROOT / "docs/son2024.md").write_text(page.substitute(table1=table1(build), recovered="\n".join(recovered)))
 

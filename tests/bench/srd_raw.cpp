@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // footlight_srd_raw SHOW                 plans it, without films, and says how far people are from their short range
-//                                        destinations in each section with a model of motion: as the model leads them and
-//                                        as they walk
+//                                        destinations in each section with a model of motion: as the model leads them
+//                                        and as they walk
 // footlight_srd_raw --steps N srd|weiss  steps a second of the model with N people on one thread
 // Prints one JSON object. For scripts/son2024.
 #include <algorithm>
@@ -113,6 +113,17 @@ Json follow(const Show& show, const Plan& plan, SectionIndex index) {
     out["off_m"].push_back(off_m / people);
     out["off_most_m"].push_back(most_m);
   }
+  // Where people of each group walk, at four instants of the crossing.
+  for (const double share : {0.0, 0.45, 0.6, 1.0}) {
+    const double at_s = share * task.duration_s();
+    Json groups;
+    for (const std::size_t p : order) {
+      const Point at = position_at(show.stage.grid, plan.tracks[p], start + seconds(at_s));
+      const auto group = show.performers[p].group;
+      groups[group ? to_text(show.groups[group->at()].colour) : "#888888"].push_back({at.x, at.y});
+    }
+    out["pictures"].push_back({{"at_s", at_s}, {"people", groups}});
+  }
   return out;
 }
 
@@ -149,9 +160,11 @@ Json steps(std::size_t people, bool formation) {
   auto now = model.value().begin();
   auto next = now;
   const auto wanted = std::min<std::uint64_t>(static_cast<std::uint64_t>(duration_s / model.value().step_s()),
-                                              std::max<std::uint64_t>(40, 2'000'000 / people));
-  // As many steps as are wanted, about the middle of the crossing where most is to be done.
-  const auto skipped = static_cast<std::uint64_t>(duration_s / model.value().step_s() - static_cast<double>(wanted)) / 2;
+                                              std::max<std::uint64_t>(40, 1'000'000 / people));
+  // As many steps as are wanted, about the middle of the crossing where most is to be done, or as near to it as that
+  // comes within some seconds.
+  const auto all = static_cast<std::uint64_t>(duration_s / model.value().step_s());
+  const auto skipped = std::min<std::uint64_t>((all - wanted) / 2, 12'000'000 / people);
   std::clock_t begin = std::clock();
   for (std::uint64_t k = 0; k < skipped + wanted; ++k) {
     if (k == skipped) begin = std::clock();
@@ -161,7 +174,8 @@ Json steps(std::size_t people, bool formation) {
     std::swap(now, next);
   }
   const double cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  return {{"people", people}, {"steps", wanted}, {"cpu_s", cpu_s}, {"steps_a_second", static_cast<double>(wanted) / cpu_s}};
+  return {
+      {"people", people}, {"steps", wanted}, {"cpu_s", cpu_s}, {"steps_a_second", static_cast<double>(wanted) / cpu_s}};
 }
 
 }  // namespace
