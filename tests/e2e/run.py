@@ -12,6 +12,7 @@ import glob
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -128,6 +129,14 @@ class Shows(Case):
         for name, people in (("theatre", 400), ("castle", 600)):
             with self.subTest(name):
                 show = os.path.join(ROOT, f"shows/kang-{name}/show.yaml")
+                self.assert_judged_well(show, people)
+                footlight("dryrun", show, "--plan", self.path("show.plan"))
+
+    def test_transforms_of_xu_2015_are_planned_judged_and_played(self):
+        for show in sorted(glob.glob(os.path.join(ROOT, "shows/xu-*/show.yaml"))):
+            with self.subTest(os.path.basename(os.path.dirname(show))):
+                with open(show) as f:
+                    people = int(re.search(r"^  count: (\d+)$", f.read(), re.M)[1])
                 self.assert_judged_well(show, people)
                 footlight("dryrun", show, "--plan", self.path("show.plan"))
 
