@@ -9,9 +9,8 @@
 #include <vector>
 
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "planner/collective/social_crowd.hpp"
 #include "planner/collective/timed_ways.hpp"
@@ -51,7 +50,7 @@ class Crossing {
       task_.radius_m.push_back(0.25);
       task_.speed_mps.push_back(1.4);
     }
-    task_.at_s = {0, 600};
+    task_.at_s = {0, 2 * kSpacing_m * side + 20};  // at about 1 m/s
     task_.floor = floor_.get();
   }
   [[nodiscard]] const MotionTask& task() const { return task_; }
@@ -107,8 +106,10 @@ const char* mistake(const MotionTask& task, const planner::Crowd& now, const pla
 }
 
 void limit_to(benchmark::State& state, int threads, const std::function<void()>& work) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  for (auto _ : state) work();
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    for (auto _ : state) work();
+  });
 }
 
 /// A model, its step beside the bound: the same state copied once, everybody sorted into bins, and everybody within
@@ -197,7 +198,7 @@ std::shared_ptr<const planner::collective::SocialCrowd> make_collective(const Mo
     SocialCrowd crowd;
     Both(const MotionTask& of, TimedWays made) : ways(std::move(made)), crowd(of, {}, ways, {}) {}
   };
-  auto ways = TimedWays::make(task, task.to, nullptr, 500);
+  auto ways = TimedWays::make(task, task.to, nullptr, task.duration_s());
   const auto both = std::make_shared<const Both>(task, std::move(ways).value());
   return {both, &both->crowd};
 }

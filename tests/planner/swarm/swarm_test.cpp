@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "core/rng.hpp"
 #include "planner/repair/closest_approach.hpp"
@@ -205,9 +205,10 @@ TEST(Swarm, PeopleStepOutOfTheWayOfWhatMoves) {
 
 template <class Model>
 std::vector<Point> after_steps(const Landscape& landscape, int threads) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
   std::vector<Point> out;
-  step_through(Model(landscape), 12, [&](const auto&, const auto& next) { out = next.position; });
+  arena.execute(
+      [&] { step_through(Model(landscape), 12, [&](const auto&, const auto& next) { out = next.position; }); });
   return out;
 }
 
