@@ -57,6 +57,13 @@ const Listing& srd_listing() {
            .doc = "Share of the steering toward her place that is added to somebody's velocity in each step.",
            .fallback = "0.3",
            .range = {0, 1}},
+          {.key = "room",
+           .type = Type::length,
+           .doc =
+               "So far apart people are kept, from centre to centre, where formations are loose enough for others to "
+               "pass through at that distance; never less than their radii or the clearance ask.",
+           .fallback = "1 m",
+           .range = {0, 10}},
           {.key = "congestion",
            .type = Type::length,
            .doc = "Side of the squares of floor in which a formation is given up while people of several groups, or a "
@@ -105,6 +112,7 @@ MotionOptions read_srd(ShowReading&, MappingReader from) {
   out.stiffness = from.number("stiffness").value_or(out.stiffness);
   out.blending = from.number("blending").value_or(out.blending);
   out.steering = from.number("steering").value_or(out.steering);
+  out.room_m = from.quantity("room").value_or(out.room_m);
   out.congestion_m = from.quantity("congestion").value_or(out.congestion_m);
   out.look_m = from.quantity("look").value_or(out.look_m);
   out.horizon_s = from.quantity("horizon").value_or(out.horizon_s);

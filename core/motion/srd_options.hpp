@@ -26,6 +26,7 @@ struct SrdOptions {
   double stiffness = 0.5;   ///< share of Eq. 8 that each iteration makes good, [0, 1]
   double blending = 0.5;    ///< share of the planned velocity in the blended one, line 5 of Algorithm 1, (0, 1]
   double steering = 0.3;    ///< share of v_s of Eq. 10 that is added each step, [0, 1]
+  double room_m = 1;        ///< so far apart people are kept where their formations leave room for that, [0, 10]
   double congestion_m = 2;  ///< side of a grid space e_k of Eq. 9, [0.1, 100]
   double look_m = 5;        ///< collisions to come are looked for so far around, [0, 100]
   double horizon_s = 5;     ///< and so far ahead, tau_0 of Weiss et al., (0, 60]

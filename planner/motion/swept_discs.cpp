@@ -43,6 +43,19 @@ std::vector<SweptDisc> swept_discs(const Show& show, Instant from, Instant to) {
   return out;
 }
 
+StageKey floor_with_discs(const StageKey& floor, const std::vector<SweptDisc>& during,
+                          const std::vector<SweptDisc>& after) {
+  StageHash hash("floor with discs");
+  hash.add(floor);
+  for (const auto* discs : {&during, &after}) {
+    hash.add(discs->size());
+    for (const SweptDisc& disc : *discs) {
+      hash.add(disc.from.x).add(disc.from.y).add(disc.to.x).add(disc.to.y).add(disc.radius_m);
+    }
+  }
+  return hash.key();
+}
+
 bool has_moving_obstacles(const Show& show) {
   return std::any_of(show.sections.begin(), show.sections.end(), [](const Section& section) {
     return section.motion != nullptr && !section.motion->obstacles.empty();

@@ -179,15 +179,7 @@ class ChainBuilder {
       const std::vector<SweptDisc> during = swept_discs(*task_.show, stops[k - 1].depart, stops[k].arrive);
       const std::vector<SweptDisc> after = swept_discs(*task_.show, stops[k].arrive, next);
       if (during.empty() && after.empty()) continue;
-      StageHash hash("floor with discs");
-      hash.add(floor_);
-      for (const auto* discs : {&during, &after}) {
-        hash.add(discs->size());
-        for (const SweptDisc& disc : *discs) {
-          hash.add(disc.from.x).add(disc.from.y).add(disc.to.x).add(disc.to.y).add(disc.radius_m);
-        }
-      }
-      leg_floor_[k] = hash.key();
+      leg_floor_[k] = floor_with_discs(floor_, during, after);
       leg_ways_[k] = std::make_unique<const Ways>(ways_.beside(during, after));
     }
   }

@@ -9,6 +9,12 @@
 #include "planner/srd/srd_step.hpp"
 
 namespace footlight::planner::srd {
+namespace {
+
+/// A formation whose neighbours are so many times as far apart as two people may come near lets others through.
+constexpr double kPassable = 2.4;
+
+}  // namespace
 
 SrdModel::SrdModel(const MotionTask& task, const SrdOptions& options)
     : task_(&task), options_(options), floor_(*task.floor) {}
@@ -19,6 +25,7 @@ Result<SrdModel> SrdModel::make(const MotionTask& task, const SrdOptions& option
   if (!groups) return groups.error();
   model.groups_ = std::move(*groups);
   model.spread();
+  model.make_room();
   return model;
 }
 
@@ -32,8 +39,36 @@ void SrdModel::spread() {
     Rng own = rng.split(i);
     agility_[i] = options_.agility * (1 + options_.variation * (2 * own.uniform() - 1));
     reaction_s_[i] = options_.reaction_s * (1 + options_.variation * (2 * own.uniform() - 1));
-    widest_m_ = std::max(widest_m_, task_->radius_m[i]);
     fastest_mps_ = std::max(fastest_mps_, task_->speed_mps[i]);
+  }
+}
+
+/// More than bodies need, so that people still pass each other when they are put on cells; less where formations are so
+/// dense that others could not come through.
+void SrdModel::make_room() {
+  radius_m_ = task_->radius_m;
+  std::vector<double> room_m(radius_m_.size(), options_.room_m / 2);
+  const double look_m = kPassable * options_.room_m;
+  for (const auto* places : {&task_->from, &task_->to}) {
+    if (places->empty() || look_m <= 0) continue;
+    Neighbours crowd;
+    crowd.sort(*places, look_m);
+    std::vector<double> room(places->size());
+    for (std::size_t n = 0; n < places->size(); ++n) {
+      double nearest = look_m * look_m;
+      crowd.visit((*places)[n], look_m, [&](std::uint32_t other, double squared) {
+        if (other != n) nearest = std::min(nearest, squared);
+      });
+      room[n] = std::sqrt(nearest) / kPassable / 2;
+    }
+    for (std::size_t i = 0; i < radius_m_.size(); ++i) {
+      const double here = room[places == &task_->from ? i : groups_.place_of[i]];
+      room_m[i] = std::min(room_m[i], here);
+    }
+  }
+  for (std::size_t i = 0; i < radius_m_.size(); ++i) {
+    radius_m_[i] = std::max(radius_m_[i], room_m[i]);
+    widest_m_ = std::max(widest_m_, radius_m_[i]);
   }
 }
 

@@ -49,6 +49,7 @@ class SrdModel {
   class Step;
   SrdModel(const MotionTask& task, const SrdOptions& options);
   void spread();
+  void make_room();
 
   const MotionTask* task_;
   SrdOptions options_;
@@ -56,7 +57,8 @@ class SrdModel {
   Groups groups_;
   std::vector<double> agility_;     ///< of each person
   std::vector<double> reaction_s_;  ///< of each person
-  double widest_m_ = 0;             ///< radius
+  std::vector<double> radius_m_;    ///< half of the room of each person
+  double widest_m_ = 0;             ///< of these
   double fastest_mps_ = 0;
 };
 

@@ -87,6 +87,11 @@ void SrdModel::Step::plan() {
 void SrdModel::Step::plan_in_formation(std::size_t i, Point destination, Point velocity) {
   destination_[i] = model_.floor_.free_place(destination);
   destination_mps_[i] = velocity;
+  const Point here = now_.position[i];
+  // The formation does not bring back who is out of it, and by steering alone she would be long in coming.
+  if (now_.released[i] != 0 && distance(here, destination) > options_.congestion_m / 2) {
+    destination_mps_[i] = seek(here, destination_[i], velocity, kArrive_s, task_.speed_mps[i]);
+  }
   go_around(i);
 }
 
@@ -142,7 +147,7 @@ void SrdModel::Step::find_congestion() {
 }
 
 double SrdModel::Step::reach_m(std::size_t i) const {
-  return task_.radius_m[i] + model_.widest_m_ + options_.step_s * (task_.speed_mps[i] + model_.fastest_mps_);
+  return model_.radius_m_[i] + model_.widest_m_ + options_.step_s * (task_.speed_mps[i] + model_.fastest_mps_);
 }
 
 void SrdModel::Step::find_neighbours() {
@@ -173,11 +178,11 @@ void SrdModel::Step::avoid() {
     Point sum;
     crowd_.visit(me.at, options_.look_m, [&](std::uint32_t j, double) {
       if (j == i || (options_.formation && model_.groups_.of[j] == model_.groups_.of[i])) return;
-      const double apart_m = task_.radius_m[i] + task_.radius_m[j];
+      const double apart_m = model_.radius_m_[i] + model_.radius_m_[j];
       if (const auto one = avoidance(me, moving(j), apart_m, options_.step_s, options_.horizon_s, k)) sum = sum + *one;
     });
     for (const MotionFloor::Disc& disc : discs_) {
-      const double apart_m = task_.radius_m[i] + disc.radius_m;
+      const double apart_m = model_.radius_m_[i] + disc.radius_m;
       const Moving it{disc.centre - options_.step_s * disc.velocity, disc.velocity};
       if (const auto one = avoidance(me, it, apart_m, options_.step_s, options_.horizon_s, k, 1)) sum = sum + *one;
     }
@@ -203,8 +208,9 @@ Point SrdModel::Step::corrected(std::size_t i) const {
     sum = sum + *one;
     ++active;
   };
-  visit_near(i, [&](std::uint32_t j) { add(separation(me, predicted_[j], task_.radius_m[i] + task_.radius_m[j])); });
-  for (const MotionFloor::Disc& disc : discs_) add(separation(me, disc.centre, task_.radius_m[i] + disc.radius_m, 1));
+  visit_near(i,
+             [&](std::uint32_t j) { add(separation(me, predicted_[j], model_.radius_m_[i] + model_.radius_m_[j])); });
+  for (const MotionFloor::Disc& disc : discs_) add(separation(me, disc.centre, model_.radius_m_[i] + disc.radius_m, 1));
   Point to = me;
   if (options_.formation && next_.released[i] == 0) to = to + formation(me, destination_[i], options_.stiffness);
   if (active > 0) to = to + kOverRelaxed / active * sum;
@@ -238,12 +244,12 @@ Point SrdModel::Step::allowed(std::size_t i, Point step) const {
       const Point toward = now_.position[j] - here;
       const double far_m = length(toward);
       if (far_m <= 0) return;
-      meet(1 / far_m * toward, std::max(0.0, (far_m - task_.radius_m[i] - task_.radius_m[j]) / 2));
+      meet(1 / far_m * toward, std::max(0.0, (far_m - model_.radius_m_[i] - model_.radius_m_[j]) / 2));
     });
     for (const MotionFloor::Disc& disc : discs_) {
       const Point toward = disc.centre - here;
       const double far_m = length(toward);
-      if (far_m > 0) meet(1 / far_m * toward, std::max(0.0, far_m - task_.radius_m[i] - disc.radius_m));
+      if (far_m > 0) meet(1 / far_m * toward, std::max(0.0, far_m - model_.radius_m_[i] - disc.radius_m));
     }
   };
   for (int round = 0; round < kGuardRounds; ++round) {

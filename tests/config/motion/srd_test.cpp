@@ -54,6 +54,7 @@ TEST_F(SrdSection, FillsWhatIsNotWrittenWithTheModelsOwnDefaults) {
   EXPECT_EQ(out.stiffness, own.stiffness);
   EXPECT_EQ(out.blending, own.blending);
   EXPECT_EQ(out.steering, own.steering);
+  EXPECT_EQ(out.room_m, own.room_m);
   EXPECT_EQ(out.congestion_m, own.congestion_m);
   EXPECT_EQ(out.look_m, own.look_m);
   EXPECT_EQ(out.horizon_s, own.horizon_s);
@@ -66,8 +67,8 @@ TEST_F(SrdSection, FillsWhatIsNotWrittenWithTheModelsOwnDefaults) {
 TEST_F(SrdSection, ReadsEveryKey) {
   const SrdOptions out = options(
       "{model: srd, srd: {orientation: wheel, formation: false, group_speed: 1.1 m/s, settle: 0.2, corner: 5 m, step: "
-      "50 ms, iterations: 8, stiffness: 0.4, blending: 0.6, steering: 0.7, congestion: 3 m, look: 6 m, horizon: 4 s, "
-      "avoidance: 0.3, agility: 2, reaction: 200 ms, variation: 0}}");
+      "50 ms, iterations: 8, stiffness: 0.4, blending: 0.6, steering: 0.7, room: 0.8 m, congestion: 3 m, look: 6 m, "
+      "horizon: 4 s, avoidance: 0.3, agility: 2, reaction: 200 ms, variation: 0}}");
   EXPECT_EQ(out.orientation, SrdOptions::Orientation::wheel);
   EXPECT_FALSE(out.formation);
   EXPECT_EQ(out.group_speed_mps, 1.1);
@@ -78,6 +79,7 @@ TEST_F(SrdSection, ReadsEveryKey) {
   EXPECT_EQ(out.stiffness, 0.4);
   EXPECT_EQ(out.blending, 0.6);
   EXPECT_EQ(out.steering, 0.7);
+  EXPECT_EQ(out.room_m, 0.8);
   EXPECT_EQ(out.congestion_m, 3);
   EXPECT_EQ(out.look_m, 6);
   EXPECT_EQ(out.horizon_s, 4);
