@@ -161,26 +161,7 @@ def castle():
     return art
 
 
-def march():
-    """1,000 people march along a curve, from a block through two shapes on the way to a block (figure 8)."""
-    art = Painting(100, 64)
-    colours = ((230, 60, 60), (60, 90, 230), (240, 150, 30), (40, 170, 90))
-    strokes = ((230, 40, 140), (150, 60, 230), (190, 190, 20), (20, 190, 190))
-    for k, (colour, brush) in enumerate(zip(colours, strokes)):
-        # Four columns side by side: lanes of one curve, each inside the one before.
-        lane = 8.2 * k
-        x0, x1 = -47.4 + lane, -40 + lane
-        art.box(x0, 2, x1, 46, lighter(colour, 0.5))
-        x0, x1 = 47.4 - lane, 40 - lane
-        art.box(x1, 2, x0, 46, darker(colour, 0.5))
-        outer = 43.7 - lane
-        top = 61 - 3.6 * k
-        art.stroke([(-outer, 40), (-outer, 50), (-outer * 0.92, top), (-outer * 0.5, top), (outer * 0.5, top), (outer * 0.92, top), (outer, 50),
-                    (outer, 40)], 1.5, brush)
-    return art
-
-
-PAINTINGS = {"kang-theatre": theatre, "kang-castle": castle, "kang-march": march}
+PAINTINGS = {"kang-theatre": theatre, "kang-castle": castle}
 
 if __name__ == "__main__":
     shows = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2] / "shows")
