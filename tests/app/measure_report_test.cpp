@@ -31,7 +31,7 @@ planner::ShowMeasures measures() {
   film.distance_gini = 0.25;
   film.direction_changes = 7;
   film.marks_per_minute = 6;
-  film.crowd = planner::CrowdFigures{20, 12.25, 0.5, 0.25, 0.125, 0.0625, 0.75, 2.5};
+  film.crowd = planner::CrowdFigures{20, 12.25, 0.5, 0.125, 0.25, 0.0625, 0.75, 2.5};
   planner::Measures cells;
   cells.formations = 1;
   cells.min_clearance_m = std::numeric_limits<double>::infinity();
