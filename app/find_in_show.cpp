@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/find_in_show.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/nearest.hpp"
 
@@ -33,6 +37,37 @@ Result<GroupIndex> find_group(const Show& show, const std::string& word) {
     return input_error(fmt::format("there is no group {} (the show has none)", config::in_quotes(word)));
   return input_error(
       fmt::format("there is no group {} ({})", config::in_quotes(word), config::suggestion(word, known, "groups")));
+}
+
+Result<SectionIndex> find_painting(const Show& show, const std::string& word) {
+  std::vector<std::string> known;
+  std::vector<std::string> paintings;
+  std::optional<SectionIndex> last;
+  for (std::size_t s = 0; s < show.sections.size(); ++s) {
+    const Section& section = show.sections[s];
+    const bool painted = std::holds_alternative<PaintingSource>(section.from);
+    if (painted && section.name == word) return SectionIndex::of(s);
+    known.push_back(section.name);
+    if (!painted) continue;
+    paintings.push_back(section.name);
+    last = SectionIndex::of(s);
+  }
+  if (!word.empty() && std::ranges::find(known, word) == known.end()) {
+    return input_error(fmt::format("there is no section {} ({})", config::in_quotes(word),
+                                   config::suggestion(word, known, "sections")));
+  }
+  if (paintings.empty()) {
+    return input_error(
+        fmt::format("no section of '{}' follows a painting (one with model: painted and from: "
+                    "{{painting: FILE.png}} does)",
+                    show.file));
+  }
+  const std::string list = fmt::format("{}", fmt::join(paintings, ", "));
+  if (!word.empty()) {
+    return input_error(fmt::format("section {} follows no painting (these do: {})", config::in_quotes(word), list));
+  }
+  if (paintings.size() > 1) return input_error(fmt::format("name one of the show's paintings: {}", list));
+  return *last;
 }
 
 Result<FormationIndex> find_formation(const Plan& plan, const std::string& word) {

@@ -23,6 +23,7 @@
 #include "app/journal_command.hpp"
 #include "app/measure_command.hpp"
 #include "app/new_command.hpp"
+#include "app/painting_command.hpp"
 #include "app/plan_command.hpp"
 #include "app/preview_command.hpp"
 #include "app/report_command.hpp"
@@ -37,11 +38,11 @@ namespace footlight::app {
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    add_new_command,     add_check_command,  add_plan_command,       add_measure_command, add_why_command,
-    add_export_command,  add_sheets_command, add_preview_command,    add_report_command,  add_diff_command,
-    add_dryrun_command,  add_dark_command,   add_devices_command,    add_sim_command,     add_run_command,
-    add_bundle_command,  add_import_command, add_commission_command, add_journal_command, add_freeze_command,
-    add_console_command,
+    add_new_command,     add_check_command,    add_plan_command,       add_measure_command, add_why_command,
+    add_export_command,  add_sheets_command,   add_preview_command,    add_report_command,  add_diff_command,
+    add_dryrun_command,  add_dark_command,     add_devices_command,    add_sim_command,     add_run_command,
+    add_bundle_command,  add_import_command,   add_commission_command, add_journal_command, add_freeze_command,
+    add_console_command, add_painting_command,
 };
 
 constexpr const char* kFooter =

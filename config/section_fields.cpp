@@ -31,7 +31,7 @@ const Listing& source_listing() {
          .list = true},
         {.key = "painting",
          .type = Type::file,
-         .doc = "A painting in colours (PNG, JPEG, BMP, PPM) that says where people are, where they go and what is in "
+         .doc = "A painting in colours (PNG, JPEG, BMP, SVG) that says where people are, where they go and what is in "
                 "the way."},
     });
     add(drawing_fields());

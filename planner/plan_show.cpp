@@ -28,10 +28,6 @@ namespace {
 
 Error interrupted() { return {ErrorKind::interrupted, "planning was stopped"}; }
 
-Ways ways_of(const Show& show, const WidePeople& wide) {
-  return {show.stage, std::max(show.stage.clearance_m / 2, wide.widest_m())};
-}
-
 bool has_slow_people(const Show& show) {
   return std::any_of(show.performers.begin(), show.performers.end(),
                      [](const Performer& performer) { return performer.max_speed_mps > 0; });

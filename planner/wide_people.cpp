@@ -54,4 +54,8 @@ void WidePeople::note(Plan& plan) const {
                                 : "everybody is planned that far apart, and many may have to wait"));
 }
 
+Ways ways_of(const Show& show, const WidePeople& wide) {
+  return {show.stage, std::max(show.stage.clearance_m / 2, wide.widest_m())};
+}
+
 }  // namespace footlight::planner

@@ -6,6 +6,7 @@
 
 #include "core/plan.hpp"
 #include "core/show.hpp"
+#include "planner/schedule/ways.hpp"
 
 namespace footlight::planner {
 
@@ -38,5 +39,8 @@ class WidePeople {
   std::optional<PerformerIndex> widest_;
   std::optional<PerformerIndex> second_;
 };
+
+/// Where the show's people can stand and walk: off what is blocked by half of the clearance, or the widest's radius.
+[[nodiscard]] Ways ways_of(const Show& show, const WidePeople& wide);
 
 }  // namespace footlight::planner

@@ -250,14 +250,13 @@ int Canvas::stride() const { return cairo_image_surface_get_stride(surface_.get(
 
 namespace {
 
-/// Cairo numbers the parts of an SVG through a whole run of a program; here they begin with 1 in every file.
-std::string numbered_anew(const std::string& svg) {
-  constexpr std::string_view kPart = "surface";
+/// Numbers one kind of an SVG's parts anew.
+std::string numbered_anew(const std::string& svg, std::string_view part) {
   std::map<std::string, std::size_t> known;
   std::string out;
   std::size_t done = 0;
-  for (std::size_t at = svg.find(kPart); at != std::string::npos; at = svg.find(kPart, done)) {
-    const std::size_t begin = at + kPart.size();
+  for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, done)) {
+    const std::size_t begin = at + part.size();
     const std::size_t end = std::min(svg.find_first_not_of("0123456789", begin), svg.size());
     out.append(svg, done, begin - done);
     if (end > begin)
@@ -265,6 +264,12 @@ std::string numbered_anew(const std::string& svg) {
     done = end;
   }
   return out.append(svg, done, std::string::npos);
+}
+
+/// Cairo numbers surfaces and pictures through a whole run of a program; here they begin with 1 in every file. Of
+/// pictures where they are named and where they are used, for the same letters may stand in one's bytes.
+std::string numbered_anew(const std::string& svg) {
+  return numbered_anew(numbered_anew(numbered_anew(svg, "surface"), "\"image"), "\"#image");
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ const Listing& paint_listing() {
 const Listing& painted_listing() {
   static const Listing kListing{
       "sections[].planner.painted",
-      "How people follow a painting (docs/algorithms/painted.md). Forces are weights, 1 as they were tuned, 0 without.",
+      "How people follow a painting (docs/algorithms/painted.md); `footlight painting` draws what is understood of it. "
+      "Forces are weights, 1 as they were tuned, 0 without.",
       {
           {.key = "background",
            .type = Type::choice,
