@@ -132,6 +132,13 @@ class Shows(Case):
                 self.assert_judged_well(show, people)
                 footlight("dryrun", show, "--plan", self.path("show.plan"))
 
+    def test_a_crossing_of_son_2024_is_planned_judged_and_played(self):
+        for name, people in (("circle-rectangle", 750), ("birds", 1170)) if FULL else (("circle-rectangle", 750),):
+            with self.subTest(name):
+                show = os.path.join(ROOT, f"shows/son-{name}/show.yaml")
+                self.assert_judged_well(show, people)
+                footlight("dryrun", show, "--plan", self.path("show.plan"))
+
     def test_transforms_of_xu_2015_are_planned_judged_and_played(self):
         for show in sorted(glob.glob(os.path.join(ROOT, "shows/xu-*/show.yaml"))):
             with self.subTest(os.path.basename(os.path.dirname(show))):
