@@ -30,8 +30,8 @@ int run(Session& session, const Options& options) {
   const bool svg = options.output.ends_with(".svg");
   if (!options.output.empty()) {
     if (!svg && !options.output.ends_with(".png")) {
-      return session.fail(
-          input_error(fmt::format("'{}': a painting is drawn into a file that ends with .svg or .png", options.output)));
+      return session.fail(input_error(
+          fmt::format("'{}': a painting is drawn into a file that ends with .svg or .png", options.output)));
     }
     if (auto free = can_write(options.output); !free) return session.fail(free.error());
   }

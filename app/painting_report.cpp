@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/painting_report.hpp"
 
+#include <cstddef>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -17,11 +19,17 @@ using planner::PaintedScene;
 ordered_json stroke_json(const PaintedScene& scene, const planner::Stroke& stroke) {
   const Point tail = scene.floor.to_floor(stroke.line.front());
   const Point head = scene.floor.to_floor(stroke.line.back());
+  ordered_json line = ordered_json::array();
+  for (std::size_t i = 0; i < stroke.line.size(); ++i) {
+    const Point at = scene.floor.to_floor(stroke.line[i]);
+    line.push_back({at.x, at.y, 2 * stroke.half_width[i] * scene.floor.pixel_m});
+  }
   return {{"length_m", stroke.length_px() * scene.floor.pixel_m},
           {"width_m", mean_width_m(scene, stroke)},
           {"fall", stroke.fall},
           {"tail", {tail.x, tail.y}},
-          {"head", {head.x, head.y}}};
+          {"head", {head.x, head.y}},
+          {"line", std::move(line)}};
 }
 
 ordered_json party_json(const Show& show, const PaintedScene& scene, const PaintedScene::Party& party) {
@@ -50,9 +58,9 @@ const std::string& path_of(const Show& show, SectionIndex section) {
 }  // namespace
 
 std::string painting_text(const Show& show, SectionIndex section, const PaintedScene& scene, const std::string& file) {
-  std::string out = fmt::format("{}: '{}', {} x {} pixels, {:.3g} m each\n", show.sections[section.at()].name,
-                                path_of(show, section), scene.picture_width, scene.picture_height,
-                                scene.picture.pixel_m);
+  std::string out =
+      fmt::format("{}: '{}', {} x {} pixels, {:.3g} m each\n", show.sections[section.at()].name, path_of(show, section),
+                  scene.picture_width, scene.picture_height, scene.picture.pixel_m);
   for (const PaintedScene::Party& party : scene.parties) {
     out += party_name(show, party) + "\n";
     for (const std::string& line : party_lines(scene, party)) out += "  " + line + "\n";

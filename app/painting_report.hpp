@@ -14,8 +14,8 @@ namespace footlight::app {
                                         const std::string& file);
 
 /// {"section", "painting": {"file", "width", "height", "pixel_m"}, "parties": [{"group", "people", "shapes": [{"order",
-/// "area_m2"}], "legs": [{"from", "to", "strokes": [{"length_m", "width_m", "fall", "tail", "head"}]}]}],
-/// "blocked_cells", "warnings", "files"}; places are [x, y] in metres.
+/// "area_m2"}], "legs": [{"from", "to", "strokes": [{"length_m", "width_m", "fall", "tail", "head", "line"}]}]}],
+/// "blocked_cells", "warnings", "files"}; places are [x, y] in metres, a line's from tail to head [x, y, width].
 [[nodiscard]] std::string painting_json(const Show& show, SectionIndex section, const planner::PaintedScene& scene,
                                         const std::string& file);
 

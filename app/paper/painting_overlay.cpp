@@ -47,7 +47,7 @@ struct Entry {
   double indent = 0;
   bool bold = false;
   Ink ink = kOnPaper.text;
-  double above = 3;                  ///< empty
+  double above = 3;                   ///< empty
   std::function<void(Point)> mark{};  ///< drawn around a point
 };
 
@@ -204,10 +204,14 @@ class Overlay {
     };
     runs(
         set.height, set.width, [&](int y, int x) { return has(x, y - 1) != has(x, y); },
-        [](int y, int x) { return Point{double(x), double(y)}; });
+        [](int y, int x) {
+          return Point{double(x), double(y)};
+        });
     runs(
         set.width, set.height, [&](int x, int y) { return has(x - 1, y) != has(x, y); },
-        [](int x, int y) { return Point{double(x), double(y)}; });
+        [](int x, int y) {
+          return Point{double(x), double(y)};
+        });
     canvas_.ink(kShapeInk);
     cairo_set_line_cap(c, CAIRO_LINE_CAP_SQUARE);
     cairo_set_line_width(c, 2);
@@ -293,8 +297,8 @@ class Overlay {
       for (std::uint8_t& pixel : outside.cells) pixel = pixel == 0 ? 1 : 0;
       const auto away = planner::nearest_pixels(outside).distance_px;
       const auto widest = std::ranges::max_element(away.cells) - away.cells.begin();
-      const Point middle = at({static_cast<double>(widest % away.width) + 0.5,
-                               static_cast<double>(widest / away.width) + 0.5});
+      const Point middle =
+          at({static_cast<double>(widest % away.width) + 0.5, static_cast<double>(widest / away.width) + 0.5});
       label(fmt::format("{}{}: {}", name, party.orders[s], party.people), middle);
     }
   }

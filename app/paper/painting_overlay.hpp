@@ -18,7 +18,8 @@ struct FieldArrows {
   std::vector<FieldArrow> strokes;     ///< of each stroke by itself, also where two cross
   std::vector<FieldArrow> background;  ///< away from walls, or towards outlines that attract
 };
-/// The fields where they are at least `least` strong, on squares of this side over the whole floor. O(squares x strokes)
+/// The fields where they are at least `least` strong, on squares of this side over the whole floor. O(squares x
+/// strokes)
 [[nodiscard]] FieldArrows field_arrows(const planner::PaintedScene& scene, double side_m, double least = 0.15);
 
 struct PaintingTask {

@@ -90,7 +90,8 @@ TEST_F(PaintingCommand, DrawsAndTellsWithoutPlanning) {
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.err, "");
     EXPECT_THAT(ran.out, StartsWith("across: '"));
-    EXPECT_THAT(ran.out, HasSubstr("painting.bmp', 120 x 80 pixels, 0.25 m each\neverybody else: 40 people\n  shape 1"));
+    EXPECT_THAT(ran.out,
+                HasSubstr("painting.bmp', 120 x 80 pixels, 0.25 m each\neverybody else: 40 people\n  shape 1"));
     EXPECT_THAT(ran.out, HasSubstr("0 cells are blocked\n" + (folder_ / name) + "\n"));
   }
   EXPECT_THAT(folder_.read("out.svg"), StartsWith("<?xml"));
@@ -116,6 +117,10 @@ TEST_F(PaintingCommand, TellsFiguresAsJson) {
   const auto& stroke = party["legs"][0]["strokes"][0];
   EXPECT_NEAR(stroke["tail"][0].get<double>(), -8.5, 1.5);
   EXPECT_NEAR(stroke["head"][0].get<double>(), 8.5, 1.5);
+  ASSERT_GT(stroke["line"].size(), 10U);
+  EXPECT_EQ(stroke["line"].front()[0], stroke["tail"][0]);
+  EXPECT_EQ(stroke["line"].back()[1], stroke["head"][1]);
+  EXPECT_NEAR(stroke["line"][stroke["line"].size() / 2][2].get<double>(), 2.5, 0.5);
   EXPECT_NEAR(stroke["width_m"].get<double>(), 2.5, 0.5);
 }
 
@@ -132,15 +137,15 @@ TEST_F(PaintingCommand, RefusesASectionThatIsNotThere) {
 }
 
 TEST_F(PaintingCommand, RefusesASectionThatFollowsNoPainting) {
-  write_show(std::string(kPainted) +
-             "  - {name: round, from: {shape: circle, radius: 8 m}, start: count 200}\n");
+  write_show(std::string(kPainted) + "  - {name: round, from: {shape: circle, radius: 8 m}, start: count 200}\n");
   EXPECT_EQ(refused({show_, "round"}), "error: section \"round\" follows no painting (these do: across)\n");
 }
 
 TEST_F(PaintingCommand, RefusesAShowWithoutAPainting) {
   write_show("  - {name: round, from: {shape: circle, radius: 8 m}, start: count 1}\n");
-  EXPECT_EQ(refused({show_}), "error: no section of '" + show_ +
-                                  "' follows a painting (one with model: painted and from: {painting: FILE.png} does)\n");
+  EXPECT_EQ(refused({show_}),
+            "error: no section of '" + show_ +
+                "' follows a painting (one with model: painted and from: {painting: FILE.png} does)\n");
 }
 
 TEST_F(PaintingCommand, AsksWhichOfSeveralPaintings) {
@@ -163,19 +168,21 @@ TEST_F(PaintingCommand, SparesThePaintingItself) {
   ASSERT_EQ(footlight({"painting", show_, "-o", folder_ / "painting.png"}).status, 0);
   write_show(text);
   const std::string before = folder_.read("painting.png");
-  EXPECT_EQ(refused({show_, "-o", folder_ / "painting.png"}),
-            "error: '" + (folder_ / "painting.png") + "' is a file that the show reads (give the output another name)\n");
+  EXPECT_EQ(
+      refused({show_, "-o", folder_ / "painting.png"}),
+      "error: '" + (folder_ / "painting.png") + "' is a file that the show reads (give the output another name)\n");
   EXPECT_EQ(folder_.read("painting.png"), before);
 }
 
 TEST_F(PaintingCommand, DrawsNothingOfAStrokeWithoutASense) {
   painter_.stroke({{26, 40}, {94, 40}}, 5, {220, 40, 40}, {220, 40, 40});
   write_painting();
-  EXPECT_EQ(refused({show_, "-o", folder_ / "out.svg"}),
-            show_ +
-                ":15:9: error: sections[0].paint[2]: the stroke #DC2828 has no gradient: its brightness does not fall by "
-                "10 of 255 from one end to the other, so that its sense is open (paint it bright where people come from "
-                "and dark where they go)\n");
+  EXPECT_EQ(
+      refused({show_, "-o", folder_ / "out.svg"}),
+      show_ +
+          ":15:9: error: sections[0].paint[2]: the stroke #DC2828 has no gradient: its brightness does not fall by "
+          "10 of 255 from one end to the other, so that its sense is open (paint it bright where people come from "
+          "and dark where they go)\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.svg"));
 }
 
