@@ -10,6 +10,8 @@ MOST_BYTES = 1024  # of a frame
 MOST_BYTES_A_SWITCH = 512 << 10  # looks of 201,600 lamps, and what 6,300 nodes have confirmed
 LONG_TASK_MS = 50
 SECONDS = 25
+LEAST_SCRIPTS = 50
+ROUNDS = 8  # of so many seconds, until enough has been seen: without a graphics card a frame may take ten of them
 
 
 def script_times_ms(events):
@@ -37,20 +39,22 @@ def make_cases(Case, web, pictures, figures):
             self.addCleanup(page.close)
             page.until("footlight.cost().frames > 0 && footlight.cost().draws >= 4", "the first whole frame", 300)
             page.value("footlight.measure()")
-            events = trace(page, SECONDS)
+            times, rounds = [], 0
+            while rounds == 0 or (len(times) <= LEAST_SCRIPTS and rounds < ROUNDS):
+                times += script_times_ms(trace(page, SECONDS))
+                rounds += 1
             cost = page.value("footlight.cost()")
-            switches = SECONDS / stand_in.PERIOD_S
+            switches = rounds * SECONDS / stand_in.PERIOD_S
             page.picture("100000-people")
-            times = script_times_ms(events)
             figures["people"] = PEOPLE
             figures["frames"] = cost["frames"]
             figures["draws_a_frame"] = cost["worst_draws"]
             figures["bytes_a_frame"] = cost["worst_bytes"]
             figures["bytes_a_switch"] = round(cost["confirmed_bytes"] / switches)
             figures["scripts"] = len(times)
-            figures["longest_script_ms"] = max(times)
+            figures["longest_script_ms"] = max(times, default=0)
             self.assertGreater(cost["frames"], 1, "nothing was drawn")
-            self.assertGreater(len(times), 50, "nothing was traced")
+            self.assertGreater(len(times), LEAST_SCRIPTS, "nothing was traced")
             self.assertGreaterEqual(cost["worst_draws"], 3)
             self.assertLessEqual(cost["worst_draws"], MOST_DRAWS)
             self.assertGreater(cost["confirmed_bytes"], 0)
