@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "core/grid.hpp"
-#include "planner/schedule/ways.hpp"
+#include "planner/motion/cell_steps.hpp"
 
 namespace footlight::planner::collective {
 
@@ -20,8 +18,8 @@ class WalkField {
   explicit WalkField(const Ways& ways);
 
   /// Steps from every cell to `goal`, m, infinity where there is no way. O(cells log cells)
-  [[nodiscard]] std::vector<float> to(CellIndex goal) const;
-  [[nodiscard]] CellIndex cell_at(Point point) const { return ways_->grid().nearest(point); }
+  [[nodiscard]] std::vector<float> to(CellIndex goal) const { return steps_.lengths_to(goal); }
+  [[nodiscard]] CellIndex cell_at(Point point) const { return steps_.ways().grid().nearest(point); }
   /// How many times the true length a length of `to` may be.
   [[nodiscard]] double longest() const { return longest_; }
   /// Of the true length: between it and it divided by longest().  @param steps_m out of `to`
@@ -31,11 +29,8 @@ class WalkField {
   [[nodiscard]] std::vector<Point> way(Point from, Point to) const;
 
  private:
-  const Ways* ways_;
+  CellSteps steps_;
   double longest_ = 1;
-  std::vector<std::uint32_t> first_;  ///< of each cell in next_
-  std::vector<std::uint32_t> next_;
-  std::vector<float> step_m_;
 };
 
 }  // namespace footlight::planner::collective

@@ -6,19 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "planner/segment.hpp"
+
 namespace footlight::planner {
 namespace {
 
 /// A sweep that comes so close to what it must keep off has arrived.
 constexpr double kTouch_m = 1e-6;
-
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
-
-Point nearest_on(Point p, Point a, Point b) {
-  const Point along = b - a;
-  const double square = squared_length(along);
-  return square > 0 ? a + std::clamp(dot(p - a, along) / square, 0.0, 1.0) * along : a;
-}
 
 }  // namespace
 
@@ -36,9 +30,6 @@ MotionFloor::MotionFloor(const Ways& ways, std::vector<MovingObstacle> moving, c
     if (terrain_ == nullptr) continue;
     for (const Point corner : grid.outline(CellIndex::of(i))) widen(terrain_low_, terrain_high_, corner);
   }
-  for (const Point corner : grid.outline(CellIndex(0))) {
-    cell_radius_m_ = std::max(cell_radius_m_, distance(corner, grid.centre(CellIndex(0))));
-  }
   for (const CellIndex cell : ways.blocked()) blocked_[cell.at()] = 1;
   for (const MovingObstacle& one : moving) {
     Moving& out = moving_.emplace_back();
@@ -54,7 +45,7 @@ std::optional<MotionFloor::Nearest> MotionFloor::nearest(Point from, double radi
   if (ways_->open()) return std::nullopt;
   const Grid& grid = ways_->grid();
   Nearest best{{}, std::numeric_limits<double>::infinity()};
-  for (const CellIndex cell : grid.within(from, radius_m + cell_radius_m_)) {
+  for (const CellIndex cell : grid.within(from, radius_m + ways_->cell_radius_m())) {
     if (blocked_[cell.at()] == 0) continue;
     const std::vector<Point> outline = grid.outline(cell);
     bool inside = true;

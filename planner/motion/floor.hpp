@@ -60,7 +60,6 @@ class MotionFloor {
   };
   std::vector<Moving> moving_;
   std::vector<char> blocked_;  ///< one flag a cell
-  double cell_radius_m_ = 0;
   const Terrain* terrain_;
   Point terrain_low_;  ///< of the rectangle around all cells' outlines
   Point terrain_high_;

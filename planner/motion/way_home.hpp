@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "planner/schedule/ways.hpp"
+#include "planner/motion/cell_steps.hpp"
 
 namespace footlight::planner {
 
@@ -21,16 +22,9 @@ class WayHome {
   [[nodiscard]] double length_m(std::uint32_t person, CellIndex from);
 
  private:
-  void find_steps();
-  [[nodiscard]] std::vector<float> flood(CellIndex to) const;
-
   const Ways& ways_;
   std::span<const CellIndex> to_;
-  struct Step {
-    CellIndex to;
-    float length_m = 0;
-  };
-  std::vector<std::vector<Step>> steps_;      ///< from each cell; empty until somebody asks
+  std::optional<CellSteps> steps_;            ///< nothing until somebody asks
   std::vector<std::vector<float>> length_m_;  ///< of each person, to each cell
   std::size_t kept_ = 0;                      ///< numbers
 };

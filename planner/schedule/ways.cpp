@@ -6,6 +6,9 @@
 #include <limits>
 #include <queue>
 #include <tuple>
+#include <utility>
+
+#include "planner/segment.hpp"
 
 namespace footlight::planner {
 namespace {
@@ -13,14 +16,7 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kRounding_m = 1e-9;
 
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
-
-double point_to_segment(Point p, Point a, Point b) {
-  const Point along = b - a;
-  const double square = squared_length(along);
-  const double share = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0.0;
-  return distance(p, a + share * along);
-}
+double point_to_segment(Point p, Point a, Point b) { return distance(p, nearest_on(p, a, b)); }
 
 double segment_to_segment(Point a, Point b, Point c, Point d) {
   const double one = cross(b - a, c - a);
@@ -114,14 +110,13 @@ std::vector<Point> Ways::around(Point from, Point to) const {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   walked[start.at()] = 0;
   open.emplace(0.0, 0.0, start);
-  const double reach = (grid_.kind() == GridKind::square ? 1.5 : 1.8) * grid_.pitch_m();
   while (!open.empty()) {
     const auto [estimate, here_m, cell] = open.top();
     open.pop();
     if (cell == goal) break;
     if (here_m > walked[cell.at()]) continue;
     const Point here = grid_.centre(cell);
-    for (const CellIndex next : grid_.within(here, reach)) {
+    for (const CellIndex next : grid_.within(here, around_cell_m())) {
       const Point there = grid_.centre(next);
       const double next_m = here_m + distance(here, there);
       if (!can_stand(next) || next_m >= walked[next.at()] || !straight(here, there)) continue;
@@ -142,7 +137,10 @@ std::vector<Point> Ways::around(Point from, Point to) const {
 
 std::vector<Point> Ways::way(Point from, Point to) const {
   if (straight(from, to)) return {from, to};
-  std::vector<Point> way = around(from, to);
+  return taut(around(from, to));
+}
+
+std::vector<Point> Ways::taut(std::vector<Point> way) const {
   std::size_t corners = 0;
   for (std::size_t at = 0; at + 1 < way.size(); ++corners) {
     std::size_t next = way.size() - 1;  // as far as can be seen

@@ -24,6 +24,11 @@ class Ways {
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] double keep_m() const { return keep_m_; }
+  [[nodiscard]] double cell_radius_m() const { return cell_radius_m_; }  ///< from a cell's centre to its corners
+  /// To the cells around a cell, those at its corners included.
+  [[nodiscard]] double around_cell_m() const {
+    return (grid_.kind() == GridKind::square ? 1.5 : 1.8) * grid_.pitch_m();
+  }
   /// The same floor while discs move over it: walks keep off them, `keep_m` from their edges, wherever they are
   /// `during` the walk, and nobody stands where they are then or `after`.
   [[nodiscard]] Ways beside(const std::vector<SweptDisc>& during, const std::vector<SweptDisc>& after) const;
@@ -44,6 +49,8 @@ class Ways {
   [[nodiscard]] Step toward(Point from, Point to, double walked_m) const;
   /// The corners of that way, `from` and `to` included; empty when there is none.
   [[nodiscard]] std::vector<Point> way(Point from, Point to) const;
+  /// A way without the corners that are not needed: from each of them straight to the last one that can be seen.
+  [[nodiscard]] std::vector<Point> taut(std::vector<Point> way) const;
 
  private:
   [[nodiscard]] std::vector<Point> around(Point from, Point to) const;

@@ -6,23 +6,20 @@
 
 #include <tbb/parallel_for.h>
 
+#include "planner/motion/cell_steps.hpp"
+
 namespace footlight::planner::srd {
 namespace {
 
 constexpr double kFarthest_m = 6;
-constexpr std::uint32_t kNoPart = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
 FreeFloor::FreeFloor(const MotionFloor& floor) : floor_(&floor) {
   if (open()) return;
-  const Grid& grid = floor.ways().grid();
-  for (const Point corner : grid.outline(CellIndex(0))) {
-    cell_radius_m_ = std::max(cell_radius_m_, distance(corner, grid.centre(CellIndex(0))));
-  }
   measure();
   find_places();
-  find_parts();
+  part_ = CellSteps(floor.ways(), floor.ways().around_cell_m()).parts();
 }
 
 void FreeFloor::measure() {
@@ -52,31 +49,6 @@ void FreeFloor::find_places() {
       }
       if (radius_m > grid.pitch_m() * (grid.columns() + grid.rows())) break;  // nobody can stand anywhere
     }
-  }
-}
-
-void FreeFloor::find_parts() {
-  const Ways& ways = floor_->ways();
-  const Grid& grid = ways.grid();
-  part_.assign(free_m_.size(), kNoPart);
-  const double reach_m = (grid.kind() == GridKind::square ? 1.5 : 1.8) * grid.pitch_m();
-  std::vector<CellIndex> reached;
-  std::uint32_t parts = 0;
-  for (std::size_t i = 0; i < part_.size(); ++i) {
-    if (part_[i] != kNoPart || !ways.can_stand(CellIndex::of(i))) continue;
-    part_[i] = parts;
-    reached.assign(1, CellIndex::of(i));
-    while (!reached.empty()) {
-      const CellIndex cell = reached.back();
-      reached.pop_back();
-      for (const CellIndex next : grid.within(grid.centre(cell), reach_m)) {
-        if (part_[next.at()] != kNoPart || !ways.can_stand(next)) continue;
-        if (!sees(grid.centre(cell), grid.centre(next))) continue;
-        part_[next.at()] = parts;
-        reached.push_back(next);
-      }
-    }
-    ++parts;
   }
 }
 
@@ -115,7 +87,7 @@ bool FreeFloor::connected(Point from, Point to) const {
   if (open()) return true;
   const Grid& grid = floor_->ways().grid();
   const std::uint32_t a = part_[place_[grid.nearest(from).at()].at()];
-  return a != kNoPart && a == part_[place_[grid.nearest(to).at()].at()];
+  return a != CellSteps::kNoCell && a == part_[place_[grid.nearest(to).at()].at()];
 }
 
 }  // namespace footlight::planner::srd

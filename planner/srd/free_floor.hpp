@@ -33,13 +33,11 @@ class FreeFloor {
  private:
   void measure();
   void find_places();
-  void find_parts();
 
   const MotionFloor* floor_;
   std::vector<float> free_m_;        ///< around each cell's centre, at most kFarthest_m
   std::vector<CellIndex> place_;     ///< nearest cell to stand on
   std::vector<std::uint32_t> part_;  ///< cells with equal numbers are connected
-  double cell_radius_m_ = 0;
 };
 
 }  // namespace footlight::planner::srd

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/segment.hpp"
+
 namespace footlight::planner::swarm {
 namespace {
 
@@ -11,12 +13,6 @@ namespace {
 constexpr double kFarSquared = 6;
 /// So far ahead one sees where a disc goes.
 constexpr double kAhead_s = 3;
-
-Point nearest_on(Point p, Point a, Point b) {
-  const Point along = b - a;
-  const double square = squared_length(along);
-  return square > 0 ? a + std::clamp(dot(p - a, along) / square, 0.0, 1.0) * along : a;
-}
 
 }  // namespace
 

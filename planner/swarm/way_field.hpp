@@ -4,32 +4,24 @@
 #include <cstdint>
 #include <vector>
 
-#include "planner/schedule/ways.hpp"
+#include "planner/motion/cell_steps.hpp"
 
 namespace footlight::planner::swarm {
 
-inline constexpr std::uint32_t kNoCell = 0xFFFFFFFFU;
-
-/// Which cells can be walked to from which, in a straight line, on a floor on which something is blocked.
+/// Which cells can be walked to from which, on a floor on which something is blocked, and which parts it has.
 class Passages {
  public:
-  /// O(cells + cells near anything blocked x walks looked at)
-  explicit Passages(const Ways& ways);
+  explicit Passages(const Ways& ways) : steps_(ways, ways.around_cell_m()), part_(steps_.parts()) {}
 
-  [[nodiscard]] const Ways& ways() const { return *ways_; }
+  [[nodiscard]] const Ways& ways() const { return steps_.ways(); }
+  [[nodiscard]] const CellSteps& steps() const { return steps_; }
   /// Part of the floor that a point is in: two points with one number can reach each other. By the nearest cell.
-  [[nodiscard]] std::uint32_t part(Point at) const { return part_[ways_->grid().nearest(at).at()]; }
+  [[nodiscard]] std::uint32_t part(Point at) const { return part_[ways().grid().nearest(at).at()]; }
   /// The nearest cell to a point among those of one part; the first of equals. O(cells)
   [[nodiscard]] CellIndex nearest_in(std::uint32_t part, Point at) const;
-  template <class Visit>
-  void each_next(std::uint32_t cell, Visit visit) const {
-    for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) visit(next_[k]);
-  }
 
  private:
-  const Ways* ways_;
-  std::vector<std::uint32_t> start_;  ///< of each cell in next_; one more than cells
-  std::vector<std::uint32_t> next_;
+  CellSteps steps_;
   std::vector<std::uint32_t> part_;
 };
 
