@@ -15,6 +15,7 @@
 #include "planner/collective/social_crowd.hpp"
 #include "planner/motion/model.hpp"
 #include "planner/motion/models.hpp"
+#include "planner/motion/ordered_task.hpp"
 
 namespace footlight::planner {
 namespace collective {
@@ -177,12 +178,13 @@ Result<Preparation> prepare(const MotionTask& task, const CollectiveOptions& opt
 }  // namespace collective
 
 Result<Trajectory> move_crowd(const MotionTask& task, const CollectiveOptions& options, const Progress& progress) {
-  auto prepared = collective::prepare(task, options, progress);
+  const OrderedTask ordered(task);
+  auto prepared = collective::prepare(ordered.task(), options, progress);
   if (!prepared) return prepared.error();
-  const collective::SocialCrowd crowd(task, options, prepared->ways, std::move(prepared->subgroup));
+  const collective::SocialCrowd crowd(ordered.task(), options, prepared->ways, std::move(prepared->subgroup));
   auto at = simulate(crowd, task.at_s, progress);
   if (!at) return collective::stopped();
-  return Trajectory{std::move(*at), std::move(prepared->place_of), std::move(prepared->notes)};
+  return ordered.as_given({std::move(*at), std::move(prepared->place_of), std::move(prepared->notes)});
 }
 
 }  // namespace footlight::planner

@@ -24,8 +24,8 @@ struct Crowd {
 /// The contract of all models of motion. A model is made of a task and does not change; a step is a pure function from
 /// one frozen generation to the next: `next` comes as an exact copy of `now`, its tick one more, and others are read
 /// from `now` alone. The order of people has no influence but through their own numbers in random streams
-/// (`Rng::split`), sums over neighbours run in an order that does not depend on threads, and the same task gives the
-/// same bytes.
+/// (`Rng::split`; planner/motion/ordered_task.hpp takes away that, too), sums over neighbours run in an order that does
+/// not depend on threads, and the same task gives the same bytes.
 template <class M>
 concept MotionModel = std::derived_from<typename M::State, Crowd> &&
     requires(const M& model, const typename M::State& now, typename M::State& next) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "planner/motion/models.hpp"
+#include "planner/motion/ordered_task.hpp"
 #include "planner/srd/srd_model.hpp"
 
 namespace footlight::planner {
@@ -15,7 +16,8 @@ constexpr double kLate_m = 1;
 }  // namespace
 
 Result<Trajectory> move_crowd(const MotionTask& task, const SrdOptions& options, const Progress& progress) {
-  auto model = srd::SrdModel::make(task, options);
+  const OrderedTask ordered(task);
+  auto model = srd::SrdModel::make(ordered.task(), options);
   if (!model) return model.error();
   auto at = simulate(*model, task.at_s, progress);
   if (!at) return Error{ErrorKind::interrupted, "stopped while people were led"};
@@ -28,7 +30,7 @@ Result<Trajectory> move_crowd(const MotionTask& task, const SrdOptions& options,
     out.notes.push_back(fmt::format("{} of {} people are more than {:g} m from their places when the section ends",
                                     late, task.people(), kLate_m));
   }
-  return out;
+  return ordered.as_given(out);
 }
 
 }  // namespace footlight::planner

@@ -24,8 +24,6 @@ namespace {
 struct Model {
   std::string name;
   MotionOptions options;
-  /// The same without anything drawn by chance, where the model can do without: then who is which number means nothing.
-  std::optional<MotionOptions> certain;
 };
 
 void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
@@ -33,10 +31,9 @@ void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
 /// Every model that leads a crowd from places to places. A painting brings both of its own: tests/planner/painted.
 std::vector<Model> models() {
   std::vector<Model> out;
-  // Its groups refuse a way that takes longer than the task; tests/planner/srd renumbers people.
-  out.push_back({"srd", SrdOptions{}, std::nullopt});
-  out.push_back({"collective", CollectiveOptions{}, std::nullopt});
-  out.push_back({"swarm", SwarmOptions{}, std::nullopt});
+  out.push_back({"srd", SrdOptions{}});
+  out.push_back({"collective", CollectiveOptions{}});
+  out.push_back({"swarm", SwarmOptions{}});
   return out;
 }
 
@@ -180,36 +177,40 @@ TEST_P(MotionContract, DoesNotDependOnWhichInstantsAreAskedFor) {
   }
 }
 
-/// Models that can do without chance: who is which number means nothing to them then.
-class CertainModel : public MotionContract {};
-
-std::vector<Model> certain_models() {
-  std::vector<Model> out = models();
-  std::erase_if(out, [](const Model& model) { return !model.certain; });
+std::vector<std::size_t> shuffled(std::size_t size, std::uint64_t seed) {
+  std::vector<std::size_t> out(size);
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  Rng rng(seed);
+  for (std::size_t i = size; i-- > 1;) std::swap(out[i], out[rng.below(i + 1)]);
   return out;
 }
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(CertainModel);
 
-TEST_P(CertainModel, DoesNotDependOnTheOrderOfPeople) {
+TEST_P(MotionContract, IsTheSameHoweverPeopleAndPlacesAreNumbered) {
   Scene scene;
-  lay_out(scene, 40, true, 0.5);
-  // Long enough for everything to act, too short for the rounding of sums in another order to grow.
-  std::erase_if(scene.task.at_s, [](double at_s) { return at_s > 3; });
-  const Trajectory out = led(scene.task, *GetParam().certain);
-  std::vector<std::size_t> order(40);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  Rng rng(11);
-  for (std::size_t i = order.size(); i-- > 1;) std::swap(order[i], order[rng.below(i + 1)]);
-  MotionTask other = scene.task;
-  for (std::size_t p = 0; p < 40; ++p) {
-    other.from[p] = scene.task.from[order[p]];
-    other.group[p] = scene.task.group[order[p]];
+  lay_out(scene, 40, true, 1);
+  for (std::size_t p = 0; p < 40; p += 3) {
+    scene.task.speed_mps[p] = 1.1;
+    scene.task.radius_m[p] = 0.3;
   }
-  const Trajectory renumbered = led(other, *GetParam().certain);
-  for (std::size_t k = 0; k < out.at.size(); ++k) {
-    for (std::size_t p = 0; p < 40; ++p) {
-      ASSERT_LT(distance(renumbered.at[k][p], out.at[k][order[p]]), 1e-6) << k << " " << p;
-    }
+  const MotionTask& task = scene.task;
+  const Trajectory out = led(task, GetParam().options);
+  const auto person = shuffled(40, 11);
+  const auto place = shuffled(40, 12);
+  MotionTask other = task;
+  for (std::size_t i = 0; i < 40; ++i) {
+    other.from[i] = task.from[person[i]];
+    other.group[i] = task.group[person[i]];
+    other.radius_m[i] = task.radius_m[person[i]];
+    other.speed_mps[i] = task.speed_mps[person[i]];
+    other.to[i] = task.to[place[i]];
+    other.to_group[i] = task.to_group[place[i]];
+  }
+  const Trajectory renumbered = led(other, GetParam().options);
+  ASSERT_EQ(renumbered.at.size(), out.at.size());
+  for (std::size_t i = 0; i < 40; ++i) {
+    ASSERT_EQ(place[renumbered.place_of[i]], out.place_of[person[i]]) << i;
+    for (std::size_t k = 0; k < out.at.size(); ++k)
+      ASSERT_EQ(renumbered.at[k][i], out.at[k][person[i]]) << k << " " << i;
   }
 }
 
@@ -231,8 +232,6 @@ TEST_P(MotionContract, OnePersonAndNobodyElseIsACrowd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, MotionContract, testing::ValuesIn(models()),
-                         [](const auto& one) { return one.param.name; });
-INSTANTIATE_TEST_SUITE_P(Models, CertainModel, testing::ValuesIn(certain_models()),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
