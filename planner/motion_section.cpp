@@ -19,10 +19,6 @@
 namespace footlight::planner {
 namespace {
 
-/// Of the speed that people on cells can keep up in every direction, so much is a model's: the rest is for the detours
-/// that they make for each other.
-constexpr double kModelShare = 0.95;
-
 using Groups = std::vector<std::optional<GroupIndex>>;
 
 /// Who stands where when the section begins, or shall when it ends.

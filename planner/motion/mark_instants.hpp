@@ -35,6 +35,10 @@ struct MarkInstants {
   void thin(std::vector<std::vector<Point>>& at, const Ways& ways);
 };
 
+/// Of the speed that people on cells can keep up in every direction (`followed_mps`), so much is a model's: the rest is
+/// for the detours that they make for each other.
+inline constexpr double kModelShare = 0.95;
+
 /// The shortest time between two marks in which somebody comes from a cell to the next, counts.
 [[nodiscard]] double least_mark_counts(const MarkTask& task);
 

@@ -18,9 +18,8 @@
 #include "planner/collective/collective.hpp"
 #include "planner/collective/social_crowd.hpp"
 #include "planner/crowd_measure.hpp"
-#include "planner/motion/mark_instants.hpp"
 #include "planner/motion/models.hpp"
-#include "planner/plan_section.hpp"
+#include "tests/bench/raw_task.hpp"
 
 namespace footlight {
 namespace {
@@ -29,8 +28,6 @@ using Json = nlohmann::ordered_json;
 using planner::CrowdInstant;
 
 constexpr double kStep_s = 0.5;
-/// As planner/motion_section.cpp gives it to models.
-constexpr double kModelShare = 0.95;
 
 double cpu_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -46,49 +43,25 @@ Json figures(const planner::CrowdSeries& series) {
           {"N", found->moving}};
 }
 
-/// Positions every half second; velocities to the next ones.
-planner::CrowdSeries series_of(const std::vector<std::vector<Point>>& at, const planner::InformationClasses& classes) {
+/// Positions at each instant; velocities to the next ones.
+planner::CrowdSeries series_of(const std::vector<double>& at_s, const std::vector<std::vector<Point>>& at,
+                               const planner::InformationClasses& classes) {
   planner::CrowdSeries out;
   out.classes = classes;
   for (std::size_t k = 0; k + 1 < at.size(); ++k) {
     std::vector<Point> velocity(at[k].size());
-    for (std::size_t p = 0; p < velocity.size(); ++p) velocity[p] = 1 / kStep_s * (at[k + 1][p] - at[k][p]);
-    out.time_s.push_back(kStep_s * static_cast<double>(k));
+    for (std::size_t p = 0; p < velocity.size(); ++p) {
+      velocity[p] = 1 / (at_s[k + 1] - at_s[k]) * (at[k + 1][p] - at[k][p]);
+    }
+    out.time_s.push_back(at_s[k]);
     out.at.push_back(planner::crowd_at(at[k], velocity, at.front(), classes, k));
   }
   return out;
 }
 
-/// What the planner asks the model for, with the performers of the plan.
-planner::MotionTask task_of(const Show& show, const Plan& plan, const Section& section,
-                            const planner::MotionFloor& floor) {
-  const Instant start = show.tempo.at(section.start_count);
-  const double duration_s = to_seconds(show.tempo.at(section.start_count + section.duration_counts) - start);
-  const planner::MarkInstants marks = planner::mark_instants(
-      {&show.tempo, &show.stage.grid, show.stage.walk, section.start_count, section.duration_counts,
-       planner::section_speed(show, section), section.motion->mark_counts});
-  planner::MotionTask task;
-  for (std::size_t p = 0; p < plan.tracks.size(); ++p) {
-    task.from.push_back(position_at(show.stage.grid, plan.tracks[p], start));
-    task.to.push_back(position_at(show.stage.grid, plan.tracks[p], start + seconds(duration_s)));
-    const auto group = show.performers[p].group;
-    task.group.push_back(group ? group->value() : planner::kNoGroup);
-    task.radius_m.push_back(show.stage.clearance_m / 2);
-    task.speed_mps.push_back(kModelShare * marks.followed_mps);
-  }
-  if (!show.groups.empty()) task.to_group = task.group;
-  for (double at_s = 0; at_s <= duration_s + 1e-9; at_s += kStep_s) task.at_s.push_back(at_s);
-  task.paths = section.motion->paths;
-  task.floor = &floor;
-  task.seed = section.motion->seed;
-  return task;
-}
-
 Json compare(const Show& show, const Plan& plan, const Section& section) {
-  const planner::Ways ways(show.stage, show.stage.clearance_m / 2);
-  const Instant start = show.tempo.at(section.start_count);
-  const planner::MotionFloor floor(ways, section.motion->obstacles, show.tempo, start);
-  const planner::MotionTask task = task_of(show, plan, section, floor);
+  const auto raw = bench::raw_task(show, plan, section, kStep_s);
+  const planner::MotionTask& task = raw->task;
   const auto& options = std::get<CollectiveOptions>(section.motion->options);
   const double before = cpu_s();
   const auto prepared = planner::collective::prepare(task, options, {});
@@ -99,14 +72,12 @@ Json compare(const Show& show, const Plan& plan, const Section& section) {
     std::exit(2);
   }
   const auto classes = planner::classes_of(show.stage.grid, planner::fastest_walk_mps(plan));
-  std::vector<std::vector<Point>> walked;
+  const auto walked = bench::walked_ways(show, plan, section, *raw);
   double sum_m = 0;
   double most_m = 0;
-  for (std::size_t k = 0; k < task.at_s.size(); ++k) {
-    auto& at = walked.emplace_back();
+  for (std::size_t k = 0; k < walked.size(); ++k) {
     for (std::size_t p = 0; p < task.people(); ++p) {
-      at.push_back(position_at(show.stage.grid, plan.tracks[p], start + seconds(task.at_s[k])));
-      const double off_m = distance(at[p], led->at[k][p]);
+      const double off_m = distance(walked[k][p], led->at[k][p]);
       sum_m += off_m;
       most_m = std::max(most_m, off_m);
     }
@@ -116,8 +87,8 @@ Json compare(const Show& show, const Plan& plan, const Section& section) {
           {"subgroups", prepared->subgroups},
           {"prepare_cpu_s", prepared_s},
           {"cost", prepared->cost},
-          {"raw", figures(series_of(led->at, classes))},
-          {"walked", figures(series_of(walked, classes))},
+          {"raw", figures(series_of(task.at_s, led->at, classes))},
+          {"walked", figures(series_of(task.at_s, walked, classes))},
           {"distance_mean_m", sum_m / static_cast<double>(task.people() * task.at_s.size())},
           {"distance_max_m", most_m}};
 }

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
-#include <map>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -17,12 +16,11 @@
 
 #include "config/show_file.hpp"
 #include "core/motion.hpp"
-#include "planner/motion/mark_instants.hpp"
 #include "planner/motion/models.hpp"
-#include "planner/plan_section.hpp"
 #include "planner/plan_show.hpp"
 #include "planner/srd/srd_model.hpp"
 #include "planner/validate.hpp"
+#include "tests/bench/raw_task.hpp"
 
 namespace footlight {
 namespace {
@@ -30,62 +28,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kStep_s = 0.5;  // at most a count
-/// As planner/motion_section.cpp gives it to models.
-constexpr double kModelShare = 0.95;
 
 [[noreturn]] void fail(const std::string& message) {
   std::cerr << message << '\n';
   std::exit(2);
 }
 
-/// The performers in the order in which the planner numbers them for a section: of the formation before it.
-std::vector<std::size_t> order_of(const Show& show, const Plan& plan, SectionIndex section, const planner::Ways& ways) {
-  const auto before =
-      planner::plan_section(show, SectionIndex(section.value() - 1), std::nullopt, ways, nullptr, planner::Progress{});
-  if (!before) fail(before.error().message);
-  const Instant start = show.tempo.at(show.sections[section.at()].start_count);
-  std::map<CellIndex, std::size_t> on;
-  for (std::size_t p = 0; p < plan.tracks.size(); ++p) {
-    on[show.stage.grid.nearest(position_at(show.stage.grid, plan.tracks[p], start))] = p;
-  }
-  std::vector<std::size_t> out;
-  for (const CellIndex cell : before->stations.back().cells) out.push_back(on.at(cell));
-  return out;
-}
-
-/// What the planner asks the model for.
-planner::MotionTask task_of(const Show& show, const Plan& plan, const Section& section,
-                            const std::vector<std::size_t>& order, const planner::MotionFloor& floor) {
-  const Instant start = show.tempo.at(section.start_count);
-  const double duration_s = to_seconds(show.tempo.at(section.start_count + section.duration_counts) - start);
-  const planner::MarkInstants marks = planner::mark_instants(
-      {&show.tempo, &show.stage.grid, show.stage.walk, section.start_count, section.duration_counts,
-       planner::section_speed(show, section), section.motion->mark_counts});
-  planner::MotionTask task;
-  for (const std::size_t p : order) {
-    task.from.push_back(position_at(show.stage.grid, plan.tracks[p], start));
-    task.to.push_back(position_at(show.stage.grid, plan.tracks[p], start + seconds(duration_s)));
-    const auto group = show.performers[p].group;
-    task.group.push_back(group ? group->value() : planner::kNoGroup);
-    task.radius_m.push_back(show.stage.clearance_m / 2);
-    task.speed_mps.push_back(kModelShare * marks.followed_mps);
-  }
-  task.to_group = task.group;
-  for (double at_s = 0; at_s < duration_s - 1e-9; at_s += kStep_s) task.at_s.push_back(at_s);
-  task.at_s.push_back(duration_s);
-  task.paths = section.motion->paths;
-  task.floor = &floor;
-  task.seed = section.motion->seed;
-  return task;
-}
-
 Json follow(const Show& show, const Plan& plan, SectionIndex index) {
   const Section& section = show.sections[index.at()];
-  const planner::Ways ways(show.stage, show.stage.clearance_m / 2);
   const Instant start = show.tempo.at(section.start_count);
-  const planner::MotionFloor floor(ways, section.motion->obstacles, show.tempo, start);
-  const auto order = order_of(show, plan, index, ways);
-  const planner::MotionTask task = task_of(show, plan, section, order, floor);
+  const auto raw = bench::raw_task(show, plan, section, kStep_s);
+  const planner::MotionTask& task = raw->task;
+  const auto walked_at = bench::walked_ways(show, plan, section, *raw);
   const auto* own = std::get_if<SrdOptions>(&section.motion->options);
   const auto model = planner::srd::SrdModel::make(task, own != nullptr ? *own : SrdOptions{});
   if (!model) fail(model.error().message);
@@ -98,15 +52,15 @@ Json follow(const Show& show, const Plan& plan, SectionIndex index) {
     double walked_m = 0;
     double off_m = 0;
     double most_m = 0;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Point walked = position_at(show.stage.grid, plan.tracks[order[i]], start + seconds(task.at_s[k]));
+    for (std::size_t i = 0; i < task.people(); ++i) {
+      const Point walked = walked_at[k][i];
       raw_m += distance(led->at[k][i], destinations[i]);
       walked_m += distance(walked, destinations[i]);
       const double one_m = distance(walked, led->at[k][i]);
       off_m += one_m;
       most_m = std::max(most_m, one_m);
     }
-    const auto people = static_cast<double>(order.size());
+    const auto people = static_cast<double>(task.people());
     out["at_s"].push_back(task.at_s[k]);
     out["raw_m"].push_back(raw_m / people);
     out["walked_m"].push_back(walked_m / people);
@@ -117,7 +71,7 @@ Json follow(const Show& show, const Plan& plan, SectionIndex index) {
   for (const double share : {0.0, 0.45, 0.6, 1.0}) {
     const double at_s = share * task.duration_s();
     Json groups;
-    for (const std::size_t p : order) {
+    for (const std::size_t p : raw->performer) {
       const Point at = position_at(show.stage.grid, plan.tracks[p], start + seconds(at_s));
       const auto group = show.performers[p].group;
       groups[group ? to_text(show.groups[group->at()].colour) : "#888888"].push_back({at.x, at.y});
