@@ -29,28 +29,29 @@ namespace {
 using planner::MotionFloor;
 using planner::MotionTask;
 
-/// Two blocks of people who walk through each other on an open floor, one person on each square metre and a half.
+/// Two blocks of people in the midst of each other on an open floor, one to the left and one to the right, 1.3 people
+/// on each square metre.
 class Crossing {
  public:
   explicit Crossing(int people) {
     const int side = static_cast<int>(std::ceil(std::sqrt(people / 2.0)));
     constexpr double kSpacing_m = 1.25;
-    stage_.grid = *Grid::make(GridKind::square, static_cast<int>(2.5 * kSpacing_m * side) + 12,
-                              static_cast<int>(kSpacing_m * side) + 4, 1.0);
+    const double wide_m = kSpacing_m * side;
+    stage_.grid = *Grid::make(GridKind::square, static_cast<int>(3 * wide_m) + 12, static_cast<int>(wide_m) + 4, 1.0);
     ways_ = std::make_unique<planner::Ways>(stage_, stage_.clearance_m / 2);
     floor_ = std::make_unique<MotionFloor>(*ways_, std::vector<MovingObstacle>{}, TempoMap(), Instant{});
     for (int p = 0; p < people; ++p) {
       const int n = p / 2;
-      const double left = p % 2 == 0 ? -1 : 1;
-      const Point at{left * (1.5 + kSpacing_m * (n % side)), 1.5 + kSpacing_m * (n / side) + 0.3 * (p % 2)};
+      const double half_m = 0.5 * kSpacing_m * (p % 2);
+      const Point at{kSpacing_m * (n % side) - wide_m / 2 + half_m, 1.5 + kSpacing_m * (n / side) + half_m};
       task_.from.push_back(at);
-      task_.to.push_back({-at.x, at.y});
+      task_.to.push_back({at.x + (p % 2 == 0 ? wide_m : -wide_m), at.y});
       task_.group.push_back(static_cast<std::uint32_t>(p % 2));
       task_.to_group.push_back(static_cast<std::uint32_t>(p % 2));
       task_.radius_m.push_back(0.25);
       task_.speed_mps.push_back(1.4);
     }
-    task_.at_s = {0, 2 * kSpacing_m * side + 20};  // at about 1 m/s
+    task_.at_s = {0, wide_m + 20};  // at about 1 m/s
     task_.floor = floor_.get();
   }
   [[nodiscard]] const MotionTask& task() const { return task_; }
