@@ -60,8 +60,21 @@ struct Findings {
 class Judge {
  public:
   explicit Judge(const Plan& plan) : plan_(plan), walks_(plan), blocked_(plan.stage), moving_(plan) {
-    const std::size_t people = plan.tracks.size();
-    FL_CHECK(plan.performers.size() == people && plan.radius_m.size() == people && plan.max_speed_mps.size() == people);
+    check_lengths();
+    if (walks_.times().empty()) return;
+    start_ = walks_.times().front();
+    end_ = walks_.times().back();
+  }
+  Judge(const Plan& plan, Instant start, Instant end)
+      : plan_(plan),
+        walks_(plan, start, end),
+        blocked_(plan.stage),
+        moving_(plan),
+        start_(start),
+        end_(end),
+        whole_(false) {
+    FL_CHECK(start <= end);
+    check_lengths();
   }
 
   Verdict run() {
@@ -69,9 +82,8 @@ class Judge {
     Findings all = judge_everybody();
     all.take(shared_cells());
     all.take(formations());
-    const auto& times = walks_.times();
     judge::Approaches near;
-    if (!times.empty()) near = judge::find_approaches(plan_, walks_, times.front(), times.back(), kKept);
+    if (!walks_.times().empty()) near = judge::find_approaches(plan_, walks_, start_, end_, kKept);
     verdict.min_clearance_m = near.nearest.distance_m;
     verdict.closest_a = PerformerIndex(near.nearest.a);
     verdict.closest_b = PerformerIndex(near.nearest.b);
@@ -86,6 +98,13 @@ class Judge {
   }
 
  private:
+  void check_lengths() const {
+    const std::size_t people = plan_.tracks.size();
+    FL_CHECK(plan_.performers.size() == people && plan_.radius_m.size() == people &&
+             plan_.max_speed_mps.size() == people);
+  }
+  [[nodiscard]] bool judged(Instant at) const { return whole_ || (start_ <= at && at <= end_); }
+
   [[nodiscard]] std::string who(std::uint32_t person) const { return "performer " + plan_.performers[person]; }
   [[nodiscard]] std::string cell_text(CellIndex cell) const {
     return static_cast<int>(cell.value()) < plan_.stage.grid.size() ? plan_.stage.grid.name(cell)
@@ -123,8 +142,8 @@ class Judge {
   void times(std::uint32_t person, Findings& out) const {
     const std::vector<Mark>& track = plan_.tracks[person];
     const PerformerIndex p(person);
-    const Instant first = walks_.times().empty() ? kStart : walks_.times().front();
-    const Instant last = walks_.times().empty() ? kStart : walks_.times().back();
+    const Instant first = start_;
+    const Instant last = end_;
     if (track.empty()) {
       out.add({Kind::times, p, p, first, 0, 0, who(person) + " has no mark"});
       return;
@@ -146,6 +165,7 @@ class Judge {
   void cells(std::uint32_t person, Findings& out) const {
     const PerformerIndex p(person);
     for (const Mark& mark : plan_.tracks[person]) {
+      if (!judged(mark.time)) continue;
       if (static_cast<int>(mark.cell.value()) >= plan_.stage.grid.size()) {
         out.add({Kind::off_grid, p, p, mark.time, 0, 0,
                  who(person) + " stands off the grid at " + time_text(mark.time) + " (" + cell_text(mark.cell) +
@@ -240,7 +260,7 @@ class Judge {
       for (const Mark& mark : plan_.tracks[i]) {
         if (k >= cuts.size() || cuts[k] > mark.time) k = 0;
         while (k < cuts.size() && cuts[k] < mark.time) ++k;
-        if (k < cuts.size() && cuts[k] == mark.time) at[k].push_back({mark.time, mark.cell, i});
+        if (k < cuts.size() && cuts[k] == mark.time && judged(mark.time)) at[k].push_back({mark.time, mark.cell, i});
       }
     }
     std::vector<Findings> parts(cuts.size());
@@ -267,6 +287,7 @@ class Judge {
   Findings formations() const {
     Findings out;
     for (const Formation& formation : plan_.formations) {
+      if (!judged(formation.time)) continue;
       if (formation.cells.size() != plan_.tracks.size()) {
         out.add({Kind::wrong_formation, PerformerIndex{}, PerformerIndex{}, formation.time, 0, 0,
                  "formation " + formation.id + " has " + std::to_string(formation.cells.size()) + " cells for " +
@@ -308,11 +329,16 @@ class Judge {
   Walks walks_;
   BlockedFloor blocked_;
   judge::MovingObstacles moving_;
+  Instant start_ = kStart;
+  Instant end_ = kStart;
+  bool whole_ = true;  ///< also what lies outside of everybody's marks
 };
 
 }  // namespace
 
 Verdict validate(const Plan& plan) { return Judge(plan).run(); }
+
+Verdict validate(const Plan& plan, Instant start, Instant end) { return Judge(plan, start, end).run(); }
 
 ClosestApproach closest_approach(const Plan& plan, Instant start, Instant end) {
   FL_CHECK(start <= end);

@@ -56,6 +56,11 @@ struct Verdict {
 /// reentrant.
 [[nodiscard]] Verdict validate(const Plan& plan);
 
+/// The same of a stretch of the show: everybody has to be there from `start` to `end`, and walks that reach into it are
+/// judged as a whole, clearances only within it. @param start, end start <= end
+/// Complexity: O(M + N log marks + near pairs). Thread: reentrant.
+[[nodiscard]] Verdict validate(const Plan& plan, Instant start, Instant end);
+
 /// The two people who come nearest to each other in a stretch of the show.
 struct ClosestApproach {
   double distance_m = 0;  ///< infinity for fewer than two people

@@ -27,6 +27,11 @@ class Slabs {
   template <class Visit>
   void visit_near(std::size_t slab, Point at, double walk_m, Visit visit) {
     fill(slab);
+    visit_filled(slab, at, walk_m, visit);
+  }
+  /// The same of a stretch whose buckets are filled; many threads may look at once.
+  template <class Visit>
+  void visit_filled(std::size_t slab, Point at, double walk_m, Visit visit) const {
     const double own_m = keep_m_ + walk_m * moving_share(slab);
     const double most_m = own_m + fastest_m_ * moving_share(slab);
     const int last_row = row(at.y + most_m);
@@ -39,6 +44,9 @@ class Slabs {
         }
       }
     }
+  }
+  void fill_all() {
+    for (std::size_t slab = 0; slab < slabs_.size(); ++slab) fill(slab);
   }
 
   /// Everybody who may be met on a way, ascending.

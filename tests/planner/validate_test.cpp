@@ -49,6 +49,25 @@ TEST(Validate, FindsNothingWrongWithTwoPeopleWhoKeepApart) {
   EXPECT_EQ(verdict.closest_b, PerformerIndex(1));
 }
 
+TEST(Validate, OfAStretchSaysNothingOfWhatLiesOutsideOfIt) {
+  const Grid grid = squares();
+  // Two pass through each other between 2 s and 4 s; the first is on the other's cell at 6 s.
+  const Plan plan =
+      plan_of(grid, {{mark_at(0, grid, 1, 1), mark_at(2, grid, 1, 1), mark_at(4, grid, 3, 1), mark_at(6, grid, 1, 1)},
+                     {mark_at(0, grid, 3, 1), mark_at(2, grid, 3, 1), mark_at(4, grid, 1, 1), mark_at(6, grid, 1, 1)}});
+  EXPECT_TRUE(validate(plan, instant_at(0), instant_at(2)).valid());
+  EXPECT_THAT(kinds_of(validate(plan, instant_at(0), instant_at(3))), ElementsAre(Kind::too_close));
+  EXPECT_THAT(kinds_of(validate(plan, instant_at(3.5), instant_at(4))), ElementsAre());
+  EXPECT_THAT(kinds_of(validate(plan, instant_at(5.9), instant_at(6))), ElementsAre(Kind::same_cell, Kind::too_close));
+}
+
+TEST(Validate, OfAStretchAsksEverybodyToBeThereAllOfIt) {
+  Plan plan = calm_plan();
+  plan.tracks[0].erase(plan.tracks[0].begin());
+  EXPECT_THAT(kinds_of(validate(plan, instant_at(0), instant_at(2))), ElementsAre(Kind::times));
+  EXPECT_TRUE(validate(plan, instant_at(2), instant_at(2)).valid());
+}
+
 TEST(Validate, AcceptsAnEmptyPlan) {
   const Verdict verdict = validate(plan_of(squares(), {}));
   EXPECT_TRUE(verdict.valid());
