@@ -62,6 +62,9 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
     case Kind::missed:
       on_miss(*node);
       break;
+    case Kind::fenced:
+      on_fenced(*node);
+      break;
     case Kind::rejected:
       on_refusal(*node, event.again);
       break;
@@ -129,6 +132,16 @@ void BusLoop::on_miss(NodeState& node) noexcept {
     return;
   }
   if (++node.misses >= kMissesToQuarantine) quarantine(node);
+}
+
+/// Most often it has lost the frame that says who leads now, and with it all that was sent to everybody since.
+void BusLoop::on_fenced(NodeState& node) noexcept {
+  heartbeat_at_ = now_;
+  for (std::size_t i = 1; i < schedule_->looks().size(); ++i) uploads_[i] = std::max(uploads_[i], std::uint8_t{1});
+  need_looks(current_, node);
+  need_looks(next_, node);
+  on_miss(node);
+  if (node.quarantined) rest_for_long(node);  // somebody else's for good
 }
 
 void BusLoop::on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept {

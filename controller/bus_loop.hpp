@@ -153,6 +153,7 @@ class BusLoop final : private drivers::EventSink {
   void on_event(const drivers::DeviceEvent& event) override;
   void on_showing(NodeState& node, const drivers::DeviceEvent& event) noexcept;
   void on_miss(NodeState& node) noexcept;
+  void on_fenced(NodeState& node) noexcept;
   void on_refusal(NodeState& node, drivers::DeviceEvent::Again again) noexcept;
   void quarantine(NodeState& node) noexcept;
   void wait_after_miss(NodeState& node) noexcept;

@@ -43,6 +43,8 @@ struct DeviceEvent {
     showing,    ///< the node shows `crc` since latch `sequence`; `state` and `boots` are set
     booted,     ///< the node has restarted and shows NO-GUIDANCE
     missed,     ///< no answer in time, or a wrong one
+    fenced,     ///< the node follows another controller, or has not heard that this one leads; LEAD goes with the next
+                ///< heartbeat
     rejected,   ///< the device refused (Modbus exception, EMCY); `detail` is its code
     content,    ///< a wearable has taken the content of channel `detail` for latch `sequence`
     bus_down,   ///< on CAN `detail` is the CanState

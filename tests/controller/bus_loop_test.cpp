@@ -426,6 +426,40 @@ TEST(SequencedBus, ANodeThatAnswersButFollowsSomebodyElseIsOfferedItsLooksAgainA
   EXPECT_TRUE(bench.loop.settled());
 }
 
+TEST(SequencedBus, WhoHasNotHeardWhoLeadsIsToldAtOnceAndLit) {
+  Bench bench(schedule_of(3, 6, every_switch), 3, false);
+  auto& node = bench.driver.node(1);
+  node.showing.assign(kChannels, 19);
+  node.shown_sequence = 200;
+  node.state = 1;
+  bench.driver.fenced = {NodeIndex(1)};
+  bool first = true;
+  bench.driver.lost = [&](Kind kind, NodeIndex, Instant) {
+    return kind == Kind::heartbeat && std::exchange(first, false);
+  };
+  bench.stands_at = 0;
+  bench.run_until(kStart + milliseconds(200));
+  EXPECT_TRUE(bench.right(1, 0)) << "not only when the next heartbeat is due";
+  EXPECT_TRUE(bench.loop.settled());
+  EXPECT_EQ(bench.loop.counters().quarantines, 0U);
+  const auto& log = bench.driver.log;
+  const auto refused = std::ranges::find(log, Kind::preload, &FakeDriver::Operation::kind);
+  const auto uploads = std::count_if(refused, log.end(), [](const auto& of) { return of.kind == Kind::upload; });
+  EXPECT_GE(uploads, 20) << "it has missed the looks that were sent to everybody";
+}
+
+TEST(SequencedBus, WhoFollowsAnotherControllerForGoodIsQuarantinedAndCostsNoFlood) {
+  Bench bench(schedule_of(3, 6, every_switch), 3, false);
+  bench.driver.fenced = {NodeIndex(1)};
+  bench.driver.lost = [](Kind kind, NodeIndex, Instant) { return kind == Kind::heartbeat; };
+  bench.stands_at = 0;
+  bench.run_until(instant_at(4));
+  EXPECT_TRUE(bench.right(0, 0) && bench.right(2, 0));
+  EXPECT_EQ(bench.loop.quarantined(), std::vector<NodeIndex>{NodeIndex(1)});
+  EXPECT_LT(preloads_of(bench.driver, 1).size(), 100U);
+  EXPECT_LT(bench.driver.count(Kind::ask), 150U);
+}
+
 TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
   Bench bench(schedule_of(3, 4, every_switch), 3, false);
   const CueSchedule& schedule = bench.schedule;

@@ -52,6 +52,9 @@ class FakeDriver final : public drivers::Driver {
     return std::optional<drivers::DeviceEvent::Again>{};
   };
 
+  /// Who has not heard that this controller leads: it refuses preloads and takes no look until a heartbeat reaches it.
+  std::vector<NodeIndex> fenced;
+
   [[nodiscard]] Node& node(std::size_t n) { return nodes_[n]; }
   void reboot(std::size_t n) {
     Node& node = nodes_[n];
@@ -144,6 +147,9 @@ class FakeDriver final : public drivers::Driver {
         refusal.again = *again;
         return events.on_event(refusal);
       }
+      if (std::ranges::find(fenced, operation.node) != fenced.end()) {
+        return events.on_event({Event::Kind::fenced, operation.node, operation.sequence});
+      }
       Node& node = nodes_[operation.node.at()];
       const bool heard = !node.dead && !lost(operation.kind, operation.node, operation.at);
       if (heard) {
@@ -155,6 +161,8 @@ class FakeDriver final : public drivers::Driver {
     } else if (operation.kind == Kind::latch) {
       for (std::size_t n = 0; n < nodes_.size(); ++n) hear_latch(n, operation);
       if (canopen_) answers_at_ = done_at_ + milliseconds(20);
+    } else if (operation.kind == Kind::heartbeat) {
+      std::erase_if(fenced, [&](NodeIndex n) { return !lost(Kind::heartbeat, n, operation.at); });
     } else if (operation.kind == Kind::ask) {
       answer(operation.node.at(), operation.at, events);
     }

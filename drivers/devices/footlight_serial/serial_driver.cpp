@@ -270,7 +270,8 @@ void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
   if (frame.command == Command::lead && awaited_ && !awaited_->task && frame.address == awaited_->node.address &&
       frame.direction == footlight_serial::Direction::from_node) {
     if (leadership_ != nullptr) leadership_->refusals.fetch_add(1, std::memory_order_relaxed);
-    events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
+    beats_since_lead_ = 0;
+    events.on_event({DeviceEvent::Kind::fenced, awaited_->node.node, awaited_->sequence});
     awaited_.reset();
     line_free_ = Instant{};
     return;

@@ -345,7 +345,8 @@ void ModbusDriver::refuse(const Job& job, std::uint8_t code, EventSink& events) 
     event.kind = DeviceEvent::Kind::missed;
   } else if (code == kFenced && leadership_ != nullptr && job.purpose == Purpose::preload) {
     leadership_->refusals.fetch_add(1, std::memory_order_relaxed);
-    event.kind = DeviceEvent::Kind::missed;
+    beats_since_lead_ = 0;
+    event.kind = DeviceEvent::Kind::fenced;
   } else if (code == kDeviceFailure) {
     if (!job.retried) {
       jobs_.push_front(job);

@@ -47,6 +47,31 @@ TEST_F(ModbusDriverTest, ExceptionsOneToThreeAreRefusalsAtOnce) {
   EXPECT_EQ(log_.events.size(), 3U);
 }
 
+TEST_F(ModbusDriverTest, WhoeverIsFencedHearsWhoLeadsWithTheNextHeartbeat) {
+  Leadership leadership;
+  leadership.epoch = 9;
+  driver_ = std::make_unique<ModbusDriver>(port_, footlight_marker_profile(), std::vector<NodeAddress>{kOne, kTwo},
+                                           std::uint8_t{0x77}, &leadership);
+  const auto beat = [&] {
+    const std::size_t before = port_.sent.size();
+    EXPECT_EQ(driver_->heartbeat({}, now_), SendStatus::accepted);
+    for (int i = 0; i < 4 && !driver_->ready(); ++i) {
+      port_.taken = false;
+      step();
+    }
+    return port_.sent.size() - before;
+  };
+  EXPECT_EQ(beat(), 2U) << "LEAD before anything else";
+  EXPECT_EQ(beat(), 1U) << "then once a second";
+  ASSERT_EQ(driver_->preload(kOne, 1, kFour, now_), SendStatus::accepted);
+  answer(Outcome::exception, {}, 7);
+  EXPECT_EQ(log_.count(Kind::fenced), 1U);
+  EXPECT_EQ(log_.count(Kind::missed), 0U);
+  EXPECT_EQ(leadership.refusals, 1U);
+  EXPECT_EQ(beat(), 2U);
+  EXPECT_EQ(beat(), 1U);
+}
+
 TEST_F(ModbusDriverTest, ExceptionsFiveAndSixAreForLater) {
   for (const std::uint8_t code : {std::uint8_t{5}, std::uint8_t{6}}) {
     ASSERT_EQ(driver_->preload(kOne, 1, kFour, now_), SendStatus::accepted);

@@ -34,6 +34,31 @@ class SerialDriverTest : public ::testing::Test {
   Instant now_ = instant_at(1);
 };
 
+TEST_F(SerialDriverTest, WhoeverIsFencedHearsWhoLeadsWithTheNextHeartbeat) {
+  Leadership leadership;
+  leadership.epoch = 9;
+  SerialDriver driver(port_, {kOne, kTwo}, kPlanByte, &leadership);
+  const auto lead = encode(footlight_serial::lead(leading_byte(kPlanByte, 9), 9));
+  const auto beats = [&] {
+    now_ += kHeartbeatPeriod;
+    driver.step(now_, log_);
+    EXPECT_EQ(driver.heartbeat({}, now_), SendStatus::accepted);
+    now_ += milliseconds(20);
+    driver.step(now_, log_);
+    return !std::ranges::search(port_.sent.back(), lead).empty();
+  };
+  EXPECT_TRUE(beats()) << "before anything else";
+  EXPECT_FALSE(beats()) << "then once a second";
+  ASSERT_EQ(driver.preload(kOne, 7, kLooks, now_), SendStatus::accepted);
+  port_.hear(encode(Frame{Direction::from_node, Command::lead, 1, leading_byte(kPlanByte, 9), 0, {8, 0, 0, 0}}));
+  driver.step(now_, log_);
+  EXPECT_EQ(log_.count(Kind::fenced), 1U);
+  EXPECT_EQ(log_.count(Kind::missed), 0U);
+  EXPECT_EQ(leadership.refusals, 1U);
+  EXPECT_TRUE(beats());
+  EXPECT_FALSE(beats());
+}
+
 TEST_F(SerialDriverTest, WaitsForTheLatestPossibleAnswerAndNoLonger) {
   ASSERT_EQ(driver_.ask(kOne, now_), SendStatus::accepted);
   const Instant deadline = driver_.step(now_, log_);
