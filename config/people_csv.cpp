@@ -16,6 +16,11 @@ constexpr std::array<Colour, 8> kPalette{Colour{0x00, 0x72, 0xFF}, Colour{0xFF, 
                                          Colour{0xFF, 0x40, 0xC0}, Colour{0x00, 0xE0, 0xE0}, Colour{0x90, 0x40, 0xFF},
                                          Colour{0xFF, 0xFF, 0xFF}, Colour{0xC0, 0xFF, 0x00}};
 
+constexpr Range kRadii{0, 10, true};   // m
+constexpr Range kSpeeds{0, 20, true};  // m/s
+constexpr Range kAgilities{0, 4, false};
+constexpr Range kReactions{0, 10, false};  // s
+
 std::optional<CsvTable> load_table(ShowReading& show, const std::string& file,
                                    const std::vector<std::string>& columns) {
   Diagnostics& diagnostics = show.reading.diagnostics;
@@ -63,8 +68,10 @@ class RosterReader {
     if (const CsvField* name = field(row, "name")) out.name = name->text;
     if (const CsvField* called = field(row, "call_name")) out.name = called->text;
     if (const CsvField* group = field(row, "group")) out.group = group_of(*group);
-    out.radius_m = quantity(row, "radius", Dimension::length, {0, 10, true});
-    out.max_speed_mps = quantity(row, "speed", Dimension::speed, {0, 20, true});
+    out.radius_m = quantity(row, "radius", Dimension::length, kRadii).value_or(0);
+    out.max_speed_mps = quantity(row, "speed", Dimension::speed, kSpeeds).value_or(0);
+    out.agility = number(row, "agility", kAgilities);
+    out.reaction_s = quantity(row, "reaction", Dimension::time, kReactions);
     if (const CsvField* worn = field(row, "wearable")) out.wearable = wearable_of(*worn);
     show_.performers.push_back(std::move(out));
   }
@@ -78,17 +85,31 @@ class RosterReader {
     const auto column = table_.column(name);
     return column && !row[*column].text.empty() ? &row[*column] : nullptr;
   }
-  double quantity(const std::vector<CsvField>& row, std::string_view name, Dimension dimension, const Range& range) {
+  std::optional<double> quantity(const std::vector<CsvField>& row, std::string_view name, Dimension dimension,
+                                 const Range& range) {
     const CsvField* written = field(row, name);
-    if (written == nullptr) return 0;
+    if (written == nullptr) return std::nullopt;
     const ParsedQuantity parsed = parse_quantity(written->text, dimension);
     if (!parsed.value) {
       error(*written, parsed.text, parsed.hint);
-      return 0;
+      return std::nullopt;
     }
-    if (range.contains(*parsed.value)) return *parsed.value;
-    error(*written, in_quotes(written->text) + " is out of range", to_text(range, base_unit(dimension)));
-    return 0;
+    return within(*written, *parsed.value, range, base_unit(dimension));
+  }
+  std::optional<double> number(const std::vector<CsvField>& row, std::string_view name, const Range& range) {
+    const CsvField* written = field(row, name);
+    if (written == nullptr) return std::nullopt;
+    const auto value = parse_number(written->text);
+    if (!value) {
+      error(*written, in_quotes(written->text) + " is not a number", to_text(range, ""));
+      return std::nullopt;
+    }
+    return within(*written, *value, range, "");
+  }
+  std::optional<double> within(const CsvField& written, double value, const Range& range, std::string_view unit) {
+    if (range.contains(value)) return value;
+    error(written, in_quotes(written.text) + " is out of range", to_text(range, unit));
+    return std::nullopt;
   }
   std::optional<GroupIndex> group_of(const CsvField& written) {
     const auto known = groups_.find(written.text);
@@ -302,8 +323,9 @@ class CellsReader {
 }  // namespace
 
 void read_roster_csv(ShowReading& show, const std::string& file) {
-  const auto table =
-      load_table(show, file, {"id", "name", "call_name", "group", "cast", "cover", "radius", "speed", "wearable"});
+  const auto table = load_table(
+      show, file,
+      {"id", "name", "call_name", "group", "cast", "cover", "radius", "speed", "agility", "reaction", "wearable"});
   if (!table) return;
   const auto id = needed_column(show, *table, "id", "only id is needed: id,name,group ...");
   if (!id) return;

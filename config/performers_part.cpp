@@ -92,6 +92,19 @@ std::vector<MappingReader> read_groups(ShowReading& show, MappingReader& perform
   return kept;
 }
 
+/// What a group says of its people, to those who have nothing of their own in the roster.
+void give_limits(Show& show, MappingReader& group, GroupIndex index) {
+  const auto speed_mps = group.quantity("max_speed");
+  const auto agility = group.number("agility");
+  const auto reaction_s = group.quantity("reaction");
+  for (Performer& performer : show.performers) {
+    if (performer.group != index) continue;
+    if (performer.max_speed_mps == 0) performer.max_speed_mps = speed_mps.value_or(0);
+    if (!performer.agility) performer.agility = agility;
+    if (!performer.reaction_s) performer.reaction_s = reaction_s;
+  }
+}
+
 void read_understudies(ShowReading& show, MappingReader& performers, const IdIndex& ids) {
   std::set<std::string> known;
   for (MappingReader& one : performers.mappings("understudies")) {
@@ -175,11 +188,7 @@ void read_performers(ShowReading& show, MappingReader performers) {
         return join(show.show(), groups[g], written, GroupIndex::of(g), performer);
       });
     }
-    const auto speed_mps = groups[g].quantity("max_speed");
-    for (Performer& performer : show.show().performers) {
-      const bool slow = speed_mps && performer.group == GroupIndex::of(g) && performer.max_speed_mps == 0;
-      if (slow) performer.max_speed_mps = *speed_mps;
-    }
+    give_limits(show.show(), groups[g], GroupIndex::of(g));
   }
   read_understudies(show, performers, ids);
   check_room(show, performers);

@@ -7,6 +7,8 @@ namespace footlight::config {
 
 inline constexpr double kMostCounts = 1e6;  ///< a show of a day at 700 counts a minute
 
+/// `stage` of a show.
+[[nodiscard]] const Listing& stage_listing();
 /// `sections[]` of a show.
 [[nodiscard]] const Listing& section_listing();
 /// `sections[].from.parts[]`, and its keys that may stand in `from` itself where one drawing is the whole formation.

@@ -31,6 +31,8 @@ struct Performer {
   bool absent = false;       ///< does not come: a stand-in takes the places, or they stay empty
   std::string cover{};  ///< of who is absent: id of the understudy or performer who takes the whole way; empty: the
                         ///< planner's choice
+  std::optional<double> agility{};     ///< how strongly she steps aside, [0, 4]; nothing: as the model of motion says
+  std::optional<double> reaction_s{};  ///< before she gives way to others, [0, 10]; less is quicker; nothing: as above
 };
 
 /// Somebody who stands by and has no way of her own until she covers somebody.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -213,6 +215,8 @@ class MotionSection {
       for (const auto& group : to_.groups) task.to_group.push_back(number(group));
     }
     for (std::size_t i = 0; i < people; ++i) task.radius_m.push_back(radius_m(i));
+    task.agility = slowest(&Performer::agility, std::less<>());
+    task.reaction_s = slowest(&Performer::reaction_s, std::greater<>());
     task.speed_mps.assign(people, kModelShare * instants_.followed_mps);
     task.at_s = instants_.at_s;
     task.paths = motion_.paths;
@@ -231,6 +235,34 @@ class MotionSection {
       widest_m = std::max(widest_m, show_.performers[p].radius_m);
     }
     return widest_m;
+  }
+
+  /// What people have of their own, by whoever may stand on each cell at the beginning: of several the one who is worst
+  /// at it.  @param worse orders two of them  @return empty when nobody has any
+  template <class Worse>
+  [[nodiscard]] std::vector<std::optional<double>> slowest(std::optional<double> Performer::*own, Worse worse) const {
+    const auto has = [&](const Performer& performer) { return (performer.*own).has_value(); };
+    if (std::none_of(show_.performers.begin(), show_.performers.end(), has)) return {};
+    std::map<std::optional<GroupIndex>, std::optional<double>> of_group;
+    std::optional<double> of_all;
+    const auto take = [&](std::optional<double>& worst, double one) {
+      if (!worst || worse(one, *worst)) worst = one;
+    };
+    for (const Performer& performer : show_.performers) {
+      if (!has(performer)) continue;
+      take(of_group[performer.group], *(performer.*own));
+      take(of_all, *(performer.*own));
+    }
+    std::vector<std::optional<double>> out(from_.cells.size(), of_all);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (from_.named) {
+        out[i] = show_.performers[i].*own;
+      } else if (!from_.groups.empty()) {
+        const auto found = of_group.find(from_.groups[i]);
+        out[i] = found != of_group.end() ? found->second : std::nullopt;
+      }
+    }
+    return out;
   }
 
   /// Of each person, in the order of the beginning.

@@ -31,9 +31,9 @@ struct SrdOptions {
   double look_m = 5;        ///< collisions to come are looked for so far around, [0, 100]
   double horizon_s = 5;     ///< and so far ahead, tau_0 of Weiss et al., (0, 60]
   double avoidance = 0.24;  ///< how much of a collision to come is made good in an iteration, k of Weiss et al., [0, 1]
-  double agility = 1;       ///< what avoidance is multiplied by, for each person, [0, 4]
+  double agility = 1;       ///< what avoidance is multiplied by for who has none of her own, [0, 4]
   double reaction_s = 0.3;  ///< before somebody leaves the formation, and before she returns, [0, 10]; less is quicker
-  double variation = 0.2;   ///< agility and reaction are spread evenly by so much either way, [0, 1]
+  double variation = 0.2;   ///< these two are spread evenly by so much either way, [0, 1]; what is her own is not
 };
 
 }  // namespace footlight

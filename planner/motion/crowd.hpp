@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,14 +23,16 @@ inline constexpr std::uint32_t kNoGroup = std::numeric_limits<std::uint32_t>::ma
 struct MotionTask {
   std::vector<Point> from;  ///< where each person stands at 0 s
   std::vector<Point> to;    ///< places at the end, in any order, as many as people; empty: wherever the model ends
-  std::vector<std::uint32_t> group;        ///< of each person, as Show::groups, or kNoGroup
-  std::vector<std::uint32_t> to_group;     ///< of each place: only who is in this group may end there; empty: anybody
-  std::vector<double> radius_m;            ///< half of the room of each person, > 0
-  std::vector<double> speed_mps;           ///< fastest walk of each person, > 0
-  std::vector<double> at_s;                ///< instants that are wanted, ascending, the first 0
-  std::vector<GroupPath> paths;            ///< of the section
-  const MotionFloor* floor = nullptr;      ///< what is in the way
-  const PaintedScene* painting = nullptr;  ///< of a painted section; people begin on its begin cells
+  std::vector<std::uint32_t> group;     ///< of each person, as Show::groups, or kNoGroup
+  std::vector<std::uint32_t> to_group;  ///< of each place: only who is in this group may end there; empty: anybody
+  std::vector<double> radius_m;         ///< half of the room of each person, > 0
+  std::vector<double> speed_mps;        ///< fastest walk of each person, > 0
+  std::vector<std::optional<double>> agility;     ///< of each person; empty, or nothing: as the model's options say
+  std::vector<std::optional<double>> reaction_s;  ///< the same
+  std::vector<double> at_s;                       ///< instants that are wanted, ascending, the first 0
+  std::vector<GroupPath> paths;                   ///< of the section
+  const MotionFloor* floor = nullptr;             ///< what is in the way
+  const PaintedScene* painting = nullptr;         ///< of a painted section; people begin on its begin cells
   std::uint64_t seed = 1;
 
   [[nodiscard]] std::size_t people() const { return from.size(); }

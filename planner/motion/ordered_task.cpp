@@ -41,6 +41,8 @@ OrderedTask::OrderedTask(const MotionTask& given)
   task_.group = chosen(given.group, who_);
   task_.radius_m = chosen(given.radius_m, who_);
   task_.speed_mps = chosen(given.speed_mps, who_);
+  task_.agility = chosen(given.agility, who_);
+  task_.reaction_s = chosen(given.reaction_s, who_);
   task_.to = chosen(given.to, where_);
   task_.to_group = chosen(given.to_group, where_);
 }

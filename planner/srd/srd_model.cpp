@@ -29,7 +29,7 @@ Result<SrdModel> SrdModel::make(const MotionTask& task, const SrdOptions& option
   return model;
 }
 
-/// How people differ in agility and reaction.
+/// How people differ in agility and reaction: each as she is, who says nothing by chance.
 void SrdModel::spread() {
   const std::size_t people = task_->people();
   agility_.resize(people);
@@ -37,8 +37,10 @@ void SrdModel::spread() {
   const Rng rng(task_->seed);
   for (std::size_t i = 0; i < people; ++i) {
     Rng own = rng.split(i);
-    agility_[i] = options_.agility * (1 + options_.variation * (2 * own.uniform() - 1));
-    reaction_s_[i] = options_.reaction_s * (1 + options_.variation * (2 * own.uniform() - 1));
+    const double agility = options_.agility * (1 + options_.variation * (2 * own.uniform() - 1));
+    const double reaction_s = options_.reaction_s * (1 + options_.variation * (2 * own.uniform() - 1));
+    agility_[i] = task_->agility.empty() ? agility : task_->agility[i].value_or(agility);
+    reaction_s_[i] = task_->reaction_s.empty() ? reaction_s : task_->reaction_s[i].value_or(reaction_s);
     fastest_mps_ = std::max(fastest_mps_, task_->speed_mps[i]);
   }
 }

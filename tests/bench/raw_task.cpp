@@ -38,6 +38,8 @@ std::unique_ptr<const RawTask> raw_task(const Show& show, const Plan& plan, cons
     task.group.push_back(group ? group->value() : planner::kNoGroup);
     task.radius_m.push_back(std::max(show.stage.clearance_m / 2, show.performers[p].radius_m));
     task.speed_mps.push_back(planner::kModelShare * marks.followed_mps);
+    task.agility.push_back(show.performers[p].agility);
+    task.reaction_s.push_back(show.performers[p].reaction_s);
   }
   if (!show.groups.empty()) task.to_group = task.group;
   const double duration_s = to_seconds(end - start);

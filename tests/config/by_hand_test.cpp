@@ -145,6 +145,39 @@ TEST_F(ByHand, ARostersOwnSpeedGoesBeforeTheGroups) {
   EXPECT_EQ(result->show.performers[1].max_speed_mps, 0.5);
 }
 
+TEST_F(ByHand, ARostersOwnAgilityAndReactionGoBeforeTheGroups) {
+  folder_.write("roster.csv", "id,group,agility,reaction\namy,slow,0,0 s\nrory,slow,,\nriver,,2,\n");
+  folder_.write(
+      "show.yaml",
+      "footlight: 1\ntitle: t\nstage: {grid: {columns: 6, rows: 4}}\n"
+      "performers: {from: roster.csv, groups: [{name: slow, colour: \"#FFFFFF\", agility: 0.5, reaction: 1.2 s}]}\n"
+      "sections: [{name: s, from: {video: film.mp4}, start: count 1}]\n");
+  const auto result = load_show(folder_.path("show.yaml"));
+  ASSERT_TRUE(result) << result.error().to_text();
+  const auto& people = result->show.performers;
+  EXPECT_EQ(people[0].agility, 0.0);
+  EXPECT_EQ(people[0].reaction_s, 0.0);
+  EXPECT_EQ(people[1].agility, 0.5);
+  EXPECT_EQ(people[1].reaction_s, 1.2);
+  EXPECT_EQ(people[2].agility, 2.0);
+  EXPECT_EQ(people[2].reaction_s, std::nullopt);
+}
+
+TEST_F(ByHand, SaysWhatIsWrongWithAGroupsAgilityAndReaction) {
+  folder_.write(
+      "show.yaml",
+      "footlight: 1\ntitle: t\nstage: {grid: {columns: 6, rows: 4}}\n"
+      "performers: {count: 2, groups: [{name: a, members: 1, colour: \"#FFFFFF\", agility: 5, reaction: 1}]}\n"
+      "sections: [{name: s, from: {video: film.mp4}, start: count 1}]\n");
+  const auto result = load_show(folder_.path("show.yaml"));
+  ASSERT_FALSE(result);
+  EXPECT_EQ(
+      folder_.without_folder(result.error().to_text()),
+      "show.yaml:4:83: error: performers.groups[0].agility: \"5\" is out of range (0 to 4)\n"
+      "show.yaml:4:96: error: performers.groups[0].reaction: \"1\" has no unit (write for example \"3.2 s\"; units: "
+      "s, ms, min)\n");
+}
+
 TEST_F(ByHand, CellsMayNameGroupsInsteadOfPeople) {
   const Show read = show("sections: [{name: s, from: {cells: a.csv}, start: count 1}]\n");
   const auto& cells = std::get<CellsSource>(read.sections.at(0).from);

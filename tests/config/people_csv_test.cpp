@@ -108,7 +108,7 @@ TEST_F(PeopleCsv, SaysWhatIsWrongWithAHeader) {
   EXPECT_EQ(
       errors("", "performer,col,row\n"),
       "roster.csv: error: the file is empty (it begins with a header of: id, name, call_name, group, cast, cover, "
-      "radius, speed, wearable)\n");
+      "radius, speed, agility, reaction, wearable)\n");
   EXPECT_EQ(errors("id\n", "performer,col,row\n"),
             "roster.csv: error: nobody is in the roster (one row for every performer)\n");
 }
@@ -125,6 +125,26 @@ TEST_F(PeopleCsv, SaysWhatIsWrongWithARoster) {
             "roster.csv:4:1: error: the id is empty (every performer has an id of her own)\n"
             "roster.csv:5:4: error: \"30 m/s\" is out of range (above 0, at most 20 m/s)\n"
             "roster.csv:5:11: error: the wearable \"W1\" stands here for the second time (first in line 2)\n");
+}
+
+TEST_F(PeopleCsv, PeopleStepAsideAndReactEachInHerOwnWay) {
+  const Show read =
+      loaded("id,agility,reaction\na,1.5,200 ms\nb,0,0 s\nc,,\n", "performer,col,row\na,0,0\nb,1,0\nc,2,0\n");
+  EXPECT_EQ(read.performers[0].agility, 1.5);
+  EXPECT_EQ(read.performers[0].reaction_s, 0.2);
+  EXPECT_EQ(read.performers[1].agility, 0.0);
+  EXPECT_EQ(read.performers[1].reaction_s, 0.0);
+  EXPECT_EQ(read.performers[2].agility, std::nullopt);
+  EXPECT_EQ(read.performers[2].reaction_s, std::nullopt);
+}
+
+TEST_F(PeopleCsv, SaysWhatIsWrongWithAgilityAndReaction) {
+  EXPECT_EQ(errors("id,agility,reaction\na,quick,0.2\nb,4.1,11 s\nc,-1,\n", "performer,col,row\na,0,0\nb,1,0\nc,2,0\n"),
+            "roster.csv:2:3: error: \"quick\" is not a number (0 to 4)\n"
+            "roster.csv:2:9: error: \"0.2\" has no unit (write for example \"3.2 s\"; units: s, ms, min)\n"
+            "roster.csv:3:3: error: \"4.1\" is out of range (0 to 4)\n"
+            "roster.csv:3:7: error: \"11 s\" is out of range (0 to 10 s)\n"
+            "roster.csv:4:3: error: \"-1\" is out of range (0 to 4)\n");
 }
 
 TEST_F(PeopleCsv, WantsTheGroupsOfTheShowFileWhereThereAreAny) {

@@ -147,6 +147,35 @@ TEST(MotionSection, WhoFollowsAModelKeepsHerTrackBetweenFormationsOfGroups) {
   }
 }
 
+/// The crossing by short range destinations, with nothing left to chance.
+Show srd_show(double agility, double reaction_s) {
+  Show show = crossing_show();
+  Motion motion;
+  SrdOptions options;
+  options.agility = agility;
+  options.reaction_s = reaction_s;
+  options.variation = 0;
+  motion.options = options;
+  show.sections[1].planner.model = PlannerModel::srd;
+  show.sections[1].motion = std::make_shared<Motion>(std::move(motion));
+  return show;
+}
+
+TEST(MotionSection, AgilityAndReactionOfAGroupsPeopleReachTheModel) {
+  Show own = srd_show(1, 0.3);
+  for (Performer& performer : own.performers) {
+    performer.agility = 3;
+    performer.reaction_s = 2;
+  }
+  // As if the model had been told; so many decimals of everybody's way cannot be equal by chance.
+  EXPECT_EQ(planned_of(own).plan.tracks, planned_of(srd_show(3, 2)).plan.tracks);
+  EXPECT_NE(planned_of(own).plan.tracks, planned_of(srd_show(1, 0.3)).plan.tracks);
+  // Of a group whose places are anybody's the slowest counts.
+  for (std::size_t p = 2; p < own.performers.size(); ++p) own.performers[p].agility = 3.5;
+  for (std::size_t p = 2; p < own.performers.size(); ++p) own.performers[p].reaction_s = 1;
+  EXPECT_EQ(planned_of(own).plan.tracks, planned_of(srd_show(3, 2)).plan.tracks);
+}
+
 TEST(MotionSection, PeopleWhoAreNamedBeforeKeepTheirNames) {
   Show show = crossing_show();
   auto& begin = std::get<CellsSource>(show.sections[0].from);

@@ -155,6 +155,62 @@ TEST(SrdModel, ReactionIsTheTimeBeforeSomebodyLeavesHerFormation) {
   EXPECT_EQ(first_tick(0.5), quick + 4);  // five steps of 0.1 s in all
 }
 
+TEST(SrdModel, EverybodyReactsInHerOwnTime) {
+  const TaskFloor floor;
+  MotionTask task = task_on(floor, 40);
+  // Four pairs, far from each other, who walk straight at each other.
+  for (const double y : {5.0, 15.0, 25.0, 35.0}) {
+    add_group(task, 0, {{-15, y}}, {{15, y}});
+    add_group(task, 1, {{15, y}}, {{-15, y}});
+  }
+  task.agility.assign(8, 0.0);  // nobody steps aside, so that all meet as if nobody reacted
+  const auto released_at = [&](std::vector<std::optional<double>> reaction_s) {
+    task.reaction_s = std::move(reaction_s);
+    SrdOptions options;
+    options.reaction_s = 0.35;
+    options.variation = 0;
+    std::vector<std::uint64_t> tick(8, 0);
+    run(model_of(task, options), task, [&](const auto&, const auto& next) {
+      for (std::size_t i = 0; i < tick.size(); ++i) {
+        if (tick[i] == 0 && next.released[i] != 0) tick[i] = next.tick;
+      }
+    });
+    return tick;
+  };
+  std::vector<std::uint64_t> expected = released_at(std::vector<std::optional<double>>(8, 0.0));
+  EXPECT_GT(*std::min_element(expected.begin(), expected.end()), 0U);
+  // A step is 0.1 s: who waits 0.5 s is released in the fifth step in which she sees the other.
+  const std::vector<std::uint64_t> later{0, 4, 0, 0, 2, 3, 0, 1};
+  for (std::size_t i = 0; i < later.size(); ++i) expected[i] += later[i];
+  EXPECT_EQ(released_at({0.0, 0.5, 0.1, 0.05, 0.25, std::nullopt, 0.0, 0.2}), expected);
+}
+
+TEST(SrdModel, EverybodyStepsAsideByHerOwnAgility) {
+  const TaskFloor floor;
+  MotionTask task = task_on(floor, 40);
+  add_group(task, 0, {{-15, 10}}, {{15, 10}});
+  add_group(task, 1, {{15, 10}}, {{-15, 10}});
+  SrdOptions options;
+  options.agility = 0.5;
+  options.variation = 0;
+  options.room_m = 0;  // they do not touch yet in the step that is looked at
+  const auto first_aside = [&](std::optional<double> own) {
+    task.agility = {own, 0.0};
+    task.reaction_s = {0.0, 0.0};
+    double aside = 0;
+    run(model_of(task, options), task, [&](const auto&, const auto& next) {
+      if (aside > kRounding_m) return;
+      aside = 10 - next.position[0].y;
+      EXPECT_NEAR(next.position[1].y, 10, kRounding_m);
+    });
+    return aside;
+  };
+  const double half = first_aside(0.5);
+  EXPECT_GT(half, 1e-4);
+  EXPECT_NEAR(first_aside(1), 2 * half, 1e-9);
+  EXPECT_NEAR(first_aside(std::nullopt), half, 1e-9);  // who has none of her own is as the options say
+}
+
 TEST(SrdModel, MoreAgilePeopleStepAsideMore) {
   const TaskFloor floor;
   const auto first_aside = [&](double agility) {
