@@ -34,6 +34,19 @@ struct PlaceInformation {
   std::uint32_t moving;   ///< N: people who walk; who stands has no direction
 };
 
+/// The classes of somebody who walks.
+struct WalkClasses {
+  static constexpr std::uint16_t kStands = 0xFFFF;  ///< as sector: of who does not walk
+  std::uint16_t across = 0;
+  std::uint16_t up = 0;
+  std::uint16_t sector = kStands;
+  std::uint16_t pace = 0;
+};
+/// Somebody walks who moves faster than a millimetre a second.
+[[nodiscard]] WalkClasses walk_classes(Point position, Point velocity, const InformationClasses& classes);
+
+/// Of those who walk among `people`. O(people + bins across the floor x sectors)
+[[nodiscard]] PlaceInformation place_information(std::span<const WalkClasses> people);
 /// Of those who move faster than a millimetre a second. Few people bias it: with N people in B bins and K sectors pure
 /// chance gives about (B - 1) (K - 1) / (2 N ln 2) bits.
 /// @param position, velocity of everybody, m and m/s

@@ -3,34 +3,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include "core/check.hpp"
 #include "core/rng.hpp"
+#include "planner/collective/pushes.hpp"
 
 namespace footlight::planner::collective {
 namespace {
 
-/// Forces are cut off where they have fallen to exp(-this) of what they are where two touch.
-constexpr double kCutOff = 3.5;
 /// What is wanted in less time than this would be a jerk, reaction times.
 constexpr double kLeastTime = 1;
 
+/// Calls work(first, last) for chunks of people on all cores. What a chunk does must not depend on another.
+template <class Work>
+void for_chunks(std::size_t people, Work work) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, people, 256), [&](const auto& range) { work(range.begin(), range.end()); },
+      tbb::simple_partitioner());
+}
+
 template <class Work>
 void for_each_person(std::size_t people, Work work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, people, 64), [&](const auto& range) {
-    for (std::size_t p = range.begin(); p != range.end(); ++p) work(p);
+  for_chunks(people, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p != last; ++p) work(p);
   });
 }
 
-/// Anywhere in a disc of radius `most`, evenly: xi of Eq. 7.
+/// Anywhere in a disc of radius `most`, evenly: xi of Eq. 7. The first draw within it of those in its square.
 Point fluctuation(Rng rng, double most) {
-  const double turn = 2 * std::numbers::pi * rng.uniform();
-  const double size = most * std::sqrt(rng.uniform());
-  return {size * std::cos(turn), size * std::sin(turn)};
+  for (;;) {
+    const Point drawn{2 * rng.uniform() - 1, 2 * rng.uniform() - 1};
+    if (squared_length(drawn) <= 1) return most * drawn;
+  }
 }
 
 }  // namespace
@@ -45,7 +53,10 @@ SocialCrowd::SocialCrowd(const MotionTask& task, const CollectiveOptions& option
       separation_{options.separation_mps2, options.group_range_m},
       cohesion_{options.cohesion_mps2, options.group_range_m} {
   FL_CHECK(subgroup_.empty() || subgroup_.size() == task.people());
-  for (const std::uint32_t one : subgroup_) subgroups_ = std::max(subgroups_, one + 1);
+  for (const std::uint32_t one : subgroup_) {
+    if (one >= subgroup_people_.size()) subgroup_people_.resize(one + 1, 0);
+    ++subgroup_people_[one];
+  }
   double widest_m = 0;
   double fastest_mps = 0;
   for (std::size_t p = 0; p < task.people(); ++p) {
@@ -56,6 +67,7 @@ SocialCrowd::SocialCrowd(const MotionTask& task, const CollectiveOptions& option
   const double range_m = subgroup_.empty() ? repulsion_.range_m : std::max(repulsion_.range_m, separation_.range_m);
   look_m_ = 2 * widest_m + kCutOff * range_m;
   const Grid& grid = task.floor->ways().grid();
+  if (task.floor->ways().blocked().empty()) return;
   near_blocked_.assign(static_cast<std::size_t>(grid.size()), 0);
   const double felt_m = widest_m + kCutOff * repulsion_.range_m + task.floor->ways().keep_m() + 2 * grid.pitch_m();
   for (const CellIndex blocked : task.floor->ways().blocked()) {
@@ -83,108 +95,128 @@ std::uint32_t SocialCrowd::corner_of(const State& now, std::size_t person, doubl
   return corner;
 }
 
-SocialCrowd::Wishes SocialCrowd::wishes(const State& next, const std::vector<Point>& position, double at_s) const {
-  Wishes out{std::vector<Point>(position.size()), std::vector<double>(position.size())};
-  for_each_person(position.size(), [&](std::size_t p) {
-    const TimedWays::Corner& corner = ways_.of(p)[next.next_corner[p]];
-    const Point way = corner.at - position[p];
-    const double left_s = corner.timed ? corner.at_s - at_s : corner.end_s - at_s;
-    const double left_m = length(way) + (corner.timed ? 0 : corner.left_m);
-    out.heading[p] = unit(way);
-    out.speed_mps[p] = std::min(task_.speed_mps[p], left_m / std::max(left_s, kLeastTime * options_.reaction_s));
-  });
-  return out;
+SocialCrowd::Wish SocialCrowd::wish(std::uint32_t corner, std::size_t person, Point at, double limit_mps,
+                                    double at_s) const {
+  const TimedWays::Corner& next = ways_.of(person)[corner];
+  const Point way = next.at - at;
+  const double way_m = std::sqrt(squared_length(way));
+  const double left_s = (next.timed ? next.at_s : next.end_s) - at_s;
+  const double left_m = way_m + (next.timed ? 0 : next.left_m);
+  return {way_m > 0 ? 1 / way_m * way : Point{},
+          std::min(limit_mps, left_m / std::max(left_s, kLeastTime * options_.reaction_s))};
 }
 
-void SocialCrowd::feed_back(const State& now, const PlaceInformation& information, Wishes& wishes) const {
-  if (!options_.feedback || information.moving == 0) return;
+void SocialCrowd::make_wishes(const State& now, State& next, double at_s, Scratch& scratch) const {
+  scratch.wish.resize(now.position.size());
+  scratch.classes.resize(options_.feedback ? now.position.size() : 0);
+  for_each_person(now.position.size(), [&](std::size_t p) {
+    const Point here = now.position[p];
+    next.next_corner[p] = corner_of(now, p, at_s);
+    scratch.wish[p] = wish(next.next_corner[p], p, here, limit_mps(p, here), at_s);
+    if (options_.feedback) scratch.classes[p] = walk_classes(here, now.velocity[p], classes_);
+  });
+  if (!options_.feedback) return;
+  next.information = place_information(scratch.classes);
+  feed_back(now, next.information, scratch);
+}
+
+void SocialCrowd::feed_back(const State& now, const PlaceInformation& information, Scratch& scratch) const {
+  if (information.moving == 0) return;
   struct Bin {
-    Point heading;
-    double speed_mps = 0;
+    Wish sum;
     double people = 0;
   };
   const Point span = task_.floor->high() - task_.floor->low();
   const std::size_t columns = std::size_t{classes_.bin(span.x)} + 1;
   std::vector<Bin> bins(columns * (std::size_t{classes_.bin(span.y)} + 1));
-  std::vector<std::size_t> bin_of(now.position.size());
-  for (std::size_t p = 0; p < bin_of.size(); ++p) {
-    const Point at = now.position[p] - classes_.low;
-    bin_of[p] = std::min(bins.size() - 1, classes_.bin(at.y) * columns + classes_.bin(at.x));
-    Bin& bin = bins[bin_of[p]];
-    bin.heading = bin.heading + wishes.heading[p];
-    bin.speed_mps += wishes.speed_mps[p];
+  const auto bin_of = [&](std::size_t p) -> Bin& {
+    return bins[std::min(bins.size() - 1, scratch.classes[p].up * columns + scratch.classes[p].across)];
+  };
+  for (std::size_t p = 0; p < now.position.size(); ++p) {
+    Bin& bin = bin_of(p);
+    bin.sum.heading = bin.sum.heading + scratch.wish[p].heading;
+    bin.sum.speed_mps += scratch.wish[p].speed_mps;
     ++bin.people;
   }
-  for_each_person(bin_of.size(), [&](std::size_t p) {
-    const Bin& bin = bins[bin_of[p]];
+  for_each_person(now.position.size(), [&](std::size_t p) {
+    const Bin& bin = bin_of(p);
     if (bin.people < 2) return;
     const double others = bin.people - 1;
-    const Point heading = wishes.heading[p];
-    const double speed = wishes.speed_mps[p];
-    wishes.heading[p] = fed_back_heading(heading, 1 / others * (bin.heading - heading), information.direction_bits);
-    wishes.speed_mps[p] = std::clamp(fed_back_speed(speed, (bin.speed_mps - speed) / others, information.speed_bits),
-                                     0.0, task_.speed_mps[p]);
+    Wish& own = scratch.wish[p];
+    const Point heading = 1 / others * (bin.sum.heading - own.heading);
+    const double speed_mps = (bin.sum.speed_mps - own.speed_mps) / others;
+    own.heading = fed_back_heading(own.heading, heading, information.direction_bits);
+    own.speed_mps = std::clamp(fed_back_speed(own.speed_mps, speed_mps, information.speed_bits), 0.0,
+                               limit_mps(p, now.position[p]));
   });
 }
 
-SocialCrowd::Pushes SocialCrowd::pushes(const State& now) const {
+void SocialCrowd::find_pushes(const State& now, Scratch& scratch) const {
   const std::size_t people = now.position.size();
-  Pushes out{std::vector<Point>(people), std::vector<Point>(people)};
-  Neighbours near;
-  near.sort(now.position, look_m_);
-  for_each_person(people, [&](std::size_t p) {
-    const Point here = now.position[p];
-    near.visit(here, look_m_, [&](std::uint32_t other, double squared) {
-      if (other == p || squared == 0) return;
-      const double touch_m = task_.radius_m[p] + task_.radius_m[other];
-      const double room_m = std::sqrt(squared) - touch_m;
-      const bool stranger = !subgroup_.empty() && subgroup_[p] != subgroup_[other];
-      Point& sum = stranger ? out.strangers[p] : out.own[p];
-      if (room_m < kCutOff * repulsion_.range_m) {
-        sum = sum + repulse_force(here, now.position[other], touch_m, repulsion_);
-      }
-      if (stranger && room_m < kCutOff * separation_.range_m) {
-        sum = sum + repulse_force(here, now.position[other], touch_m, separation_);
-      }
-    });
+  const Neighbours& near = scratch.near;
+  const std::span<const std::uint32_t> order = near.order();
+  scratch.own.resize(people);
+  scratch.strangers.resize(people);
+  scratch.radius_m.resize(people);
+  scratch.subgroup.resize(people);
+  for_each_person(people, [&](std::size_t k) {
+    scratch.radius_m[k] = task_.radius_m[order[k]];
+    scratch.subgroup[k] = subgroup_.empty() ? 0 : subgroup_[order[k]];
   });
-  return out;
+  const double squared_look = look_m_ * look_m_;
+  for_chunks(people, [&](std::size_t first, std::size_t last) {
+    Around around;
+    for (std::size_t k = first; k < last; ++k) {
+      const Point here = near.places()[k];
+      std::size_t most = 0;
+      near.visit_rows(here, look_m_, [&](std::uint32_t begin, std::uint32_t end) { most += end - begin; });
+      around.clear(most);
+      near.visit_rows(here, look_m_, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t other = begin; other < end; ++other) {
+          around.add(here - near.places()[other], squared_look, scratch.radius_m[k] + scratch.radius_m[other],
+                     scratch.subgroup[k] != scratch.subgroup[other]);
+        }
+      });
+      const Around::Sums sums = around.pushes(repulsion_, separation_);
+      scratch.own[order[k]] = sums.own;
+      scratch.strangers[order[k]] = sums.strangers;
+    }
+  });
 }
 
 /// A sub-group takes part of what strangers do to its people as one.
-void SocialCrowd::share_pushes(Pushes& pushes) const {
+void SocialCrowd::share_pushes(Scratch& scratch) const {
   if (subgroup_.empty() || options_.rigidity <= 0) return;
-  std::vector<Point> mean(subgroups_);
-  std::vector<double> people(subgroups_, 0);
+  scratch.sum.assign(subgroup_people_.size(), {});
   for (std::size_t p = 0; p < subgroup_.size(); ++p) {
-    mean[subgroup_[p]] = mean[subgroup_[p]] + pushes.strangers[p];
-    ++people[subgroup_[p]];
+    scratch.sum[subgroup_[p]] = scratch.sum[subgroup_[p]] + scratch.strangers[p];
   }
   for (std::size_t p = 0; p < subgroup_.size(); ++p) {
     const std::uint32_t one = subgroup_[p];
-    pushes.strangers[p] = (1 - options_.rigidity) * pushes.strangers[p] + options_.rigidity / people[one] * mean[one];
+    scratch.strangers[p] =
+        (1 - options_.rigidity) * scratch.strangers[p] + options_.rigidity / subgroup_people_[one] * scratch.sum[one];
   }
 }
 
 /// From each person to where the rest of her sub-group has her place: how far they all are from their ideal places on
 /// average, less how far she is.
-std::vector<Point> SocialCrowd::missing(const State& now, double at_s) const {
-  std::vector<Point> off(now.position.size());
+void SocialCrowd::find_missing(const State& now, double at_s, Scratch& scratch) const {
+  std::vector<Point>& off = scratch.off;
+  off.resize(subgroup_.size());
+  if (subgroup_.empty()) return;
   for_each_person(off.size(), [&](std::size_t p) { off[p] = now.position[p] - ways_.place(p, at_s); });
-  std::vector<Point> sum(subgroups_);
-  std::vector<double> people(subgroups_, 0);
+  scratch.sum.assign(subgroup_people_.size(), {});
+  for (std::size_t p = 0; p < off.size(); ++p) scratch.sum[subgroup_[p]] = scratch.sum[subgroup_[p]] + off[p];
   for (std::size_t p = 0; p < off.size(); ++p) {
-    sum[subgroup_[p]] = sum[subgroup_[p]] + off[p];
-    ++people[subgroup_[p]];
+    off[p] = 1 / subgroup_people_[subgroup_[p]] * scratch.sum[subgroup_[p]] - off[p];
   }
-  for (std::size_t p = 0; p < off.size(); ++p) off[p] = 1 / people[subgroup_[p]] * sum[subgroup_[p]] - off[p];
-  return off;
 }
 
-Point SocialCrowd::obstacles(std::size_t person, Point at, const std::vector<MotionFloor::Disc>& discs) const {
+Point SocialCrowd::obstacles(std::size_t person, Point at, bool near_blocked,
+                             const std::vector<MotionFloor::Disc>& discs) const {
   Point sum;
   const double radius_m = task_.radius_m[person];
-  if (near_blocked_[task_.floor->ways().grid().nearest(at).at()] != 0) {
+  if (near_blocked) {
     const auto near = task_.floor->nearest(at, radius_m + kCutOff * repulsion_.range_m);
     if (near) sum = sum + obstacle_force(at, near->at, radius_m, repulsion_);
   }
@@ -198,9 +230,9 @@ Point SocialCrowd::obstacles(std::size_t person, Point at, const std::vector<Mot
 }
 
 /// A step, swept: along what is in the way as far as it is free, out of discs that came.
-Point SocialCrowd::moved(std::size_t person, Point from, Point by, const std::vector<MotionFloor::Disc>& discs) const {
+Point SocialCrowd::moved(std::size_t person, Point from, Point by, bool near_blocked,
+                         const std::vector<MotionFloor::Disc>& discs) const {
   const MotionFloor& floor = *task_.floor;
-  const Grid& grid = floor.ways().grid();
   const auto inside = [&](Point p) {
     return Point{std::clamp(p.x, floor.low().x, floor.high().x), std::clamp(p.y, floor.low().y, floor.high().y)};
   };
@@ -211,12 +243,12 @@ Point SocialCrowd::moved(std::size_t person, Point from, Point by, const std::ve
     const Point away = to == disc.centre ? Point{1, 0} : unit(to - disc.centre);
     to = inside(disc.centre + keep_m * away);
   }
-  const bool free = length(to - from) < grid.pitch_m() && near_blocked_[grid.nearest(from).at()] == 0;
-  if (free) return to;
+  const double pitch_m = floor.ways().grid().pitch_m();
+  if (!near_blocked && (near_blocked_.empty() || squared_length(to - from) < pitch_m * pitch_m)) return to;
   const double share = floor.free_share(from, to);
   const Point here = from + share * (to - from);
   if (share >= 1) return here;
-  const auto near = floor.nearest(here, floor.ways().keep_m() + grid.pitch_m());
+  const auto near = floor.nearest(here, floor.ways().keep_m() + pitch_m);
   if (!near || near->distance_m <= 0) return here;
   const Point normal = unit(here - near->at);
   const Point left = to - here;
@@ -226,29 +258,32 @@ Point SocialCrowd::moved(std::size_t person, Point from, Point by, const std::ve
 
 void SocialCrowd::step(const State& now, State& next) const {
   const double at_s = step_s() * static_cast<double>(now.tick);
-  for_each_person(now.position.size(), [&](std::size_t p) { next.next_corner[p] = corner_of(now, p, at_s); });
-  Wishes wanted = wishes(next, now.position, at_s);
-  if (options_.feedback) {
-    next.information = place_information(now.position, now.velocity, classes_);
-    feed_back(now, next.information, wanted);
-  }
-  Pushes pushed = pushes(now);
-  share_pushes(pushed);
-  const std::vector<Point> off = subgroup_.empty() ? std::vector<Point>() : missing(now, at_s);
+  const auto lent = scratch_.take();
+  Scratch& scratch = *lent;
+  tbb::parallel_invoke([&] { scratch.near.sort(now.position, look_m_ / 2); },
+                       [&] { make_wishes(now, next, at_s, scratch); });
+  find_pushes(now, scratch);
+  share_pushes(scratch);
+  find_missing(now, at_s, scratch);
   const std::vector<MotionFloor::Disc> discs = task_.floor->discs(at_s + step_s());
   const Rng chance(task_.seed);
   for_each_person(now.position.size(), [&](std::size_t p) {
-    Point force = drive_force(now.velocity[p], wanted.heading[p], wanted.speed_mps[p], options_.reaction_s) +
-                  pushed.own[p] + pushed.strangers[p] + obstacles(p, now.position[p], discs);
-    if (!off.empty()) force = force + cohesion_force(off[p], cohesion_);
+    const Point here = now.position[p];
+    const bool blocked = near_blocked(here);
+    const Wish& wanted = scratch.wish[p];
+    Point force = drive_force(now.velocity[p], wanted.heading, wanted.speed_mps, options_.reaction_s) + scratch.own[p] +
+                  scratch.strangers[p];
+    if (blocked || !discs.empty()) force = force + obstacles(p, here, blocked, discs);
+    if (!subgroup_.empty()) force = force + cohesion_force(scratch.off[p], cohesion_);
     if (options_.fluctuation_mps2 > 0) {
       force = force + fluctuation(chance.split(p).split(now.tick), options_.fluctuation_mps2);
     }
     Point velocity = now.velocity[p] + step_s() * force;
-    const double fast = length(velocity) / task_.speed_mps[p];
-    if (fast > 1) velocity = 1 / fast * velocity;
-    next.position[p] = moved(p, now.position[p], step_s() * velocity, discs);
-    next.velocity[p] = 1 / step_s() * (next.position[p] - now.position[p]);
+    const double limit = limit_mps(p, here);
+    const double squared = squared_length(velocity);
+    if (squared > limit * limit) velocity = limit / std::sqrt(squared) * velocity;
+    next.position[p] = moved(p, here, step_s() * velocity, blocked, discs);
+    next.velocity[p] = 1 / step_s() * (next.position[p] - here);
   });
 }
 

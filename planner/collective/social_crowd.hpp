@@ -10,6 +10,7 @@
 #include "planner/motion/crowd.hpp"
 #include "planner/motion/model.hpp"
 #include "planner/motion/neighbours.hpp"
+#include "planner/motion/spare.hpp"
 #include "planner/mutual_information.hpp"
 
 namespace footlight::planner::collective {
@@ -35,35 +36,51 @@ class SocialCrowd {
   void step(const State& now, State& next) const;
 
  private:
-  /// What everybody wants before forces: Eq. 8's e and v0.
-  struct Wishes {
-    std::vector<Point> heading;
-    std::vector<double> speed_mps;
+  /// What somebody wants before forces: Eq. 8's e and v0.
+  struct Wish {
+    Point heading;
+    double speed_mps = 0;
   };
-  /// What neighbours do to everybody.
-  struct Pushes {
-    std::vector<Point> own;        ///< Eq. 10 of those of her sub-group, m/s^2
-    std::vector<Point> strangers;  ///< Eq. 10 and 22 of all others
+  /// What is found out in a step; forgotten after it.
+  struct Scratch {
+    std::vector<Wish> wish;
+    std::vector<WalkClasses> classes;
+    Neighbours near;
+    std::vector<double> radius_m;         ///< in the order of `near`
+    std::vector<std::uint32_t> subgroup;  ///< in the order of `near`
+    std::vector<Point> own;               ///< Eq. 10 of those of her sub-group, m/s^2
+    std::vector<Point> strangers;         ///< Eq. 10 and 22 of all others
+    std::vector<Point> off;               ///< see `find_missing`
+    std::vector<Point> sum;               ///< of each sub-group
   };
   [[nodiscard]] std::uint32_t corner_of(const State& now, std::size_t person, double at_s) const;
-  [[nodiscard]] Wishes wishes(const State& next, const std::vector<Point>& position, double at_s) const;
-  void feed_back(const State& now, const PlaceInformation& information, Wishes& wishes) const;
-  [[nodiscard]] Pushes pushes(const State& now) const;
-  void share_pushes(Pushes& pushes) const;
-  [[nodiscard]] std::vector<Point> missing(const State& now, double at_s) const;
-  [[nodiscard]] Point obstacles(std::size_t person, Point at, const std::vector<MotionFloor::Disc>& discs) const;
-  [[nodiscard]] Point moved(std::size_t person, Point from, Point by,
+  [[nodiscard]] Wish wish(std::uint32_t corner, std::size_t person, Point at, double limit_mps, double at_s) const;
+  [[nodiscard]] double limit_mps(std::size_t person, Point at) const {
+    return task_.speed_mps[person] * task_.floor->speed_factor(at);
+  }
+  void make_wishes(const State& now, State& next, double at_s, Scratch& scratch) const;
+  void feed_back(const State& now, const PlaceInformation& information, Scratch& scratch) const;
+  void find_pushes(const State& now, Scratch& scratch) const;
+  void share_pushes(Scratch& scratch) const;
+  void find_missing(const State& now, double at_s, Scratch& scratch) const;
+  [[nodiscard]] Point obstacles(std::size_t person, Point at, bool near_blocked,
+                                const std::vector<MotionFloor::Disc>& discs) const;
+  [[nodiscard]] Point moved(std::size_t person, Point from, Point by, bool near_blocked,
                             const std::vector<MotionFloor::Disc>& discs) const;
+  [[nodiscard]] bool near_blocked(Point at) const {
+    return !near_blocked_.empty() && near_blocked_[task_.floor->ways().grid().nearest(at).at()] != 0;
+  }
 
   const MotionTask& task_;
   CollectiveOptions options_;
   const TimedWays& ways_;
   std::vector<std::uint32_t> subgroup_;
-  std::uint32_t subgroups_ = 0;
   InformationClasses classes_;
   Falloff repulsion_, separation_, cohesion_;
   double look_m_ = 1;               ///< within which others are felt
-  std::vector<char> near_blocked_;  ///< cells from which something blocked is felt
+  std::vector<char> near_blocked_;  ///< cells from which something blocked is felt; empty: nothing is blocked
+  std::vector<double> subgroup_people_;
+  Spare<Scratch> scratch_;
 };
 
 }  // namespace footlight::planner::collective

@@ -23,23 +23,23 @@ void Neighbours::sort(std::span<const Point> people, double bin_m) {
   const double most = kBinsEach * static_cast<double>(people.size()) + 1;
   const auto bins = [&](double side_m) { return std::floor(side_m / bin_m) + 1; };
   while (bins(high.x - low_.x) * bins(high.y - low_.y) > most) bin_m *= 1.5;
-  bin_m_ = bin_m;
-  columns_ = static_cast<int>(bins(high.x - low_.x));
-  rows_ = static_cast<int>(bins(high.y - low_.y));
-  start_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
+  per_bin_m_ = 1 / bin_m;
+  columns_ = static_cast<std::size_t>(bins(high.x - low_.x));
+  rows_ = static_cast<std::size_t>(bins(high.y - low_.y));
+  // Two bins ahead: while people are put into theirs, the one ahead counts up to its end, which is the next one's
+  // start.
+  start_.assign(columns_ * rows_ + 2, 0);
   bin_of_.resize(people.size());
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const int x = bin(people[i].x - low_.x, columns_);
-    const int y = bin(people[i].y - low_.y, rows_);
-    bin_of_[i] = static_cast<std::uint32_t>(y * columns_ + x);
-    ++start_[bin_of_[i] + 1];
+    const std::size_t own = bin(people[i].y - low_.y, rows_) * columns_ + bin(people[i].x - low_.x, columns_);
+    bin_of_[i] = static_cast<std::uint32_t>(own);
+    ++start_[own + 2];
   }
-  for (std::size_t b = 1; b < start_.size(); ++b) start_[b] += start_[b - 1];
+  for (std::size_t b = 2; b < start_.size(); ++b) start_[b] += start_[b - 1];
   who_.resize(people.size());
   where_.resize(people.size());
-  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const std::uint32_t k = next[bin_of_[i]]++;
+    const std::uint32_t k = start_[bin_of_[i] + 1]++;
     who_[k] = static_cast<std::uint32_t>(i);
     where_[k] = people[i];
   }

@@ -25,8 +25,8 @@ struct RawTask {
   std::vector<std::size_t> performer;  ///< who each person of the task is
 };
 
-/// People and places are in the order of where they are (planner/motion/ordered_task.hpp), so that a model that is asked
-/// directly does what it did for the plan.
+/// People and places are in the order of where they are (planner/motion/ordered_task.hpp), so that a model that is
+/// asked directly does what it did for the plan.
 /// @param section with a model of motion  @param every_s instants that are seen; the section's end is the last
 [[nodiscard]] std::unique_ptr<const RawTask> raw_task(const Show& show, const Plan& plan, const Section& section,
                                                       double every_s);

@@ -68,6 +68,26 @@ TEST(Neighbours, OfABinComeInTheOrderOfTheirNumbers) {
   EXPECT_THAT(order, testing::ElementsAre(0, 2, 4, 3, 5, 1));
 }
 
+TEST(Neighbours, StretchesOfTheirOrderHaveEverybodyWhoIsNear) {
+  Rng rng(5);
+  const std::vector<Point> people = crowd(rng);
+  Neighbours neighbours;
+  neighbours.sort(people, 1.5);
+  ASSERT_EQ(neighbours.order().size(), people.size());
+  for (std::size_t k = 0; k < people.size(); ++k) EXPECT_EQ(neighbours.places()[k], people[neighbours.order()[k]]);
+  Found found;
+  std::uint32_t before = 0;
+  neighbours.visit_rows(people[3], 3, [&](std::uint32_t begin, std::uint32_t end) {
+    EXPECT_GE(begin, before);
+    before = end;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const double squared = squared_length(neighbours.places()[k] - people[3]);
+      if (squared <= 9) found.emplace_back(neighbours.order()[k], squared);
+    }
+  });
+  EXPECT_EQ(found, visited(neighbours, people[3], 3));
+}
+
 TEST(Neighbours, OfNobodyAreNobody) {
   Neighbours neighbours;
   neighbours.sort({}, 1);
