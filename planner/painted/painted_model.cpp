@@ -2,10 +2,12 @@
 #include "planner/painted/painted_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "core/check.hpp"
@@ -15,14 +17,17 @@ namespace footlight::planner {
 namespace {
 
 constexpr std::uint32_t kNoStroke = std::numeric_limits<std::uint32_t>::max();
-constexpr double kArriveShare = 0.85;  // of a leg's time: the rest is for who is late
-constexpr double kLook_m = 4;          // how far around a pixel obstacles are looked for
-constexpr double kAccelerations = 3;   // most, in top speeds over the reaction
-constexpr double kStiffness = 2;       // pressure: a top speed over the reaction at so many times the rest density
-constexpr double kRoomShare = 1.15;    // of two radii: people farther apart do not press each other
-constexpr double kHandle_m = 1.5;      // around a waypoint forces of others calm down
+constexpr double kArriveShare = 0.7;  // of a leg's time: the rest is for who is late
+constexpr double kLook_m = 4;         // how far around a pixel obstacles are looked for
+constexpr double kAccelerations = 3;  // most, in top speeds over the reaction
+constexpr double kStiffness = 2;      // pressure: a top speed over the reaction at so many times the rest
+constexpr double kRoomShare = 1.15;   // of two radii: people farther apart do not press each other
+constexpr double kFill = 0.8;         // of the cells taken where people walk: more cannot follow a way any more
+constexpr double kHandle_m = 1.5;     // around a waypoint forces of others calm down
 constexpr double kDiscReach_m = 2;
-constexpr int kSlides = 2;
+constexpr double kHair_m = 0.005;
+constexpr std::size_t kMostAhead = 24;  // people whom a person minds
+constexpr int kSlides = 3;
 constexpr std::size_t kLookAhead = 12;  // points of a stroke's line
 
 Point unit(Point a) {
@@ -50,17 +55,14 @@ PaintedModel::PaintedModel(const MotionTask& task, const PaintedOptions& options
   find_people();
   prepare_legs();
   time_legs();
-  double room = 0;
-  for (const double radius : task.radius_m) room = std::max(room, 2 * radius);
-  const double spacing = kRoomShare * std::max(room, 0.1);
-  fluid_.reach_m = 2 * spacing;
-  // Density that the kernel finds in a triangular lattice of that spacing: oneself, six neighbours, six more at
-  // sqrt(3).
-  fluid_.rest_per_m2 = poly6(0, fluid_.reach_m) + 6 * poly6(spacing * spacing, fluid_.reach_m) +
-                       6 * poly6(3 * spacing * spacing, fluid_.reach_m);
+  const double of_cells_m = std::sqrt(scene.ways->grid().cell_area_m2() / (kFill * std::numbers::sqrt3 / 2));
+  for (const double radius : task.radius_m) {
+    spacing_m_.push_back(std::max(of_cells_m, 2 * kRoomShare * radius));
+    widest_m_ = std::max(widest_m_, spacing_m_.back());
+  }
   double fastest = 0;
   for (const double speed : task.speed_mps) fastest = std::max(fastest, speed);
-  fluid_.stiffness = kStiffness * fastest / options.reaction_s * spacing / fluid_.rest_per_m2;
+  fluid_.stiffness_m2ps2 = kStiffness * fastest / options.reaction_s * of_cells_m;
   fluid_.viscosity_m2ps = options.viscosity;
 }
 
@@ -186,7 +188,7 @@ PaintedModel::State PaintedModel::begin() const {
   out.velocity.assign(task_.people(), {});
   out.leg.assign(task_.people(), 0);
   out.along.assign(task_.people(), 0);
-  for (const StrokeFlow& flow : flows_) out.flow.push_back(flow.flow.begin());
+  for (const StrokeFlow& flow : flows_) out.flow.push_back(std::make_shared<const GridFlow::State>(flow.flow.begin()));
   return out;
 }
 
@@ -262,6 +264,7 @@ PaintedModel::Guidance PaintedModel::guidance(std::size_t person, const State& n
     }
   }
   out.direction = toward(at, goal, legs[leg].way, out.left_m);
+  out.calm = std::clamp(out.left_m / kHandle_m, 0.0, 1.0);
   return out;
 }
 
@@ -285,7 +288,8 @@ Point PaintedModel::from_discs(Point at, double radius_m, double speed_mps,
   return out;
 }
 
-/// As far as it is free, then along what is in the way.
+/// As far as it is free, then along what is in the way. A hair is left to everything: who touches a wall exactly is
+/// held by the rounding of the sweep.
 Point PaintedModel::walked(Point from, Point to) const {
   const Point pixel = scene_.floor.to_pixel(from);
   const double keep = scene_.ways->keep_m();
@@ -294,57 +298,113 @@ Point PaintedModel::walked(Point from, Point to) const {
   const double beside = scene_.floor.pixel_m * distance(pixel, {x + 0.5, y + 0.5});
   to = {std::clamp(to.x, task_.floor->low().x, task_.floor->high().x),
         std::clamp(to.y, task_.floor->low().y, task_.floor->high().y)};
-  if (clear_m_.at(x, y) - beside - distance(from, to) > keep) return to;
+  if (clear_m_.at(x, y) - beside - distance(from, to) > keep + kHair_m) return to;
+  const auto reached = [&](Point a, Point b) {
+    const double share = task_.floor->free_share(a, b);
+    const double whole = distance(a, b);
+    return share >= 1 || whole <= 0 ? b : a + std::max(0.0, share - kHair_m / whole) * (b - a);
+  };
   const Point start = from;
-  Point first = from;
-  for (int slide = 0; slide <= kSlides; ++slide) {
-    const double share = task_.floor->free_share(from, to);
-    const Point contact = from + share * (to - from);
-    if (slide == 0) first = contact;
-    if (share >= 1) break;
-    from = contact;
-    const auto near = task_.floor->nearest(contact, keep + 0.05);
-    if (!near || slide == kSlides) break;
-    const Point off = unit(contact - near->at);
-    const Point rest = to - contact;
-    to = contact + (rest - std::min(0.0, dot(rest, off)) * off);
+  const Point first = reached(from, to);
+  Point last = first;
+  for (int slide = 0; slide < kSlides && last != to; ++slide) {
+    const auto near = task_.floor->nearest(last, keep + 3 * kHair_m);
+    if (!near) break;
+    const Point off = unit(last - near->at);
+    const Point rest = to - last;
+    from = last + std::max(0.0, keep + kHair_m - near->distance_m) * off;
+    to = from + (rest - std::min(0.0, dot(rest, off)) * off);
+    last = reached(from, to);
   }
-  const Point reached = from + task_.floor->free_share(from, to) * (to - from);
   // Others see a straight line from generation to generation; it must be free as well.
-  return task_.floor->free_share(start, reached) >= 1 ? reached : first;
+  return task_.floor->free_share(start, last) >= 1 ? last : first;
 }
 
-void PaintedModel::move(std::size_t person, const State& now, State& next, const std::vector<Point>& particles,
-                        const std::vector<MotionFloor::Disc>& discs) const {
+/// All of a party go as fast as whoever has the longest way left has to: who is in front does not hold up the others.
+std::vector<double> PaintedModel::paces(const std::vector<Guidance>& lead, const State& next) const {
+  std::vector<double> left_m(legs_.size(), 0);
+  std::vector<std::uint32_t> leg(legs_.size(), 0);
+  for (std::size_t i = 0; i < lead.size(); ++i) {
+    left_m[party_[i]] = std::max(left_m[party_[i]], lead[i].left_m);
+    leg[party_[i]] = next.leg[i];
+  }
+  const double now_s = static_cast<double>(next.tick - 1) * options_.step_s;
+  for (std::size_t p = 0; p < left_m.size(); ++p) {
+    const double begun_s = leg[p] > 0 ? legs_[p][leg[p] - 1].end_s : 0;
+    const double until_s = begun_s + kArriveShare * (legs_[p][leg[p]].end_s - begun_s) - now_s;
+    left_m[p] /= std::max(until_s, options_.reaction_s);
+  }
+  return left_m;
+}
+
+/// Less of a velocity, so that nobody walks into who is ahead of her and wants the same way. The nearest count first,
+/// whatever their numbers are.
+Point PaintedModel::queued(std::size_t person, Point velocity, const Around& around) const {
+  struct Ahead {
+    double squared = 0;
+    Point at;
+    std::uint32_t who = 0;
+    [[nodiscard]] auto order() const { return std::tuple(squared, at.x, at.y); }
+  };
+  std::array<Ahead, kMostAhead> ahead;
+  std::size_t count = 0;
+  const Guidance& lead = around.lead[person];
+  const Point at = around.people.position[person];
+  const double own = spacing_m_[person];
+  const double reach = (own + widest_m_) / 2 + options_.reaction_s * task_.speed_mps[person];
+  around.near.visit(at, reach, [&](std::uint32_t k, double squared) {
+    if (squared <= 0 || dot(around.lead[k].direction, lead.direction) <= 0) return;
+    Ahead one{squared, around.people.position[k], k};
+    if (count < ahead.size())
+      ++count;
+    else if (ahead.back().order() <= one.order())
+      return;
+    std::size_t i = count - 1;
+    for (; i > 0 && one.order() < ahead[i - 1].order(); --i) ahead[i] = ahead[i - 1];
+    ahead[i] = one;
+  });
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t k = ahead[n].who;
+    const double r = std::sqrt(ahead[n].squared);
+    const Point to = 1 / r * (ahead[n].at - at);
+    const double room = r - (own + spacing_m_[k]) / 2;
+    const double most = std::max(0.0, dot(around.people.velocity[k], to) + room / options_.reaction_s);
+    const double over = dot(velocity, to) - most;
+    // Whoever is at her place is in nobody's way: cells leave room to pass between.
+    if (over > 0) velocity = velocity - std::min(lead.calm, around.lead[k].calm) * over * to;
+  }
+  return velocity;
+}
+
+void PaintedModel::move(std::size_t person, const State& now, State& next, const Around& around) const {
   const double step = options_.step_s;
-  const Guidance lead = guidance(person, now, next);
+  const Guidance& lead = around.lead[person];
   const std::uint32_t leg = next.leg[person];
   const double fastest = task_.speed_mps[person];
-  const double left_s =
-      kArriveShare * (legs_[party_[person]][leg].end_s - (leg > 0 ? legs_[party_[person]][leg - 1].end_s : 0));
-  const double begun_s = leg > 0 ? legs_[party_[person]][leg - 1].end_s : 0;
-  const double time_s = static_cast<double>(now.tick) * step;
-  const double until_s = std::max(begun_s + left_s - time_s, options_.reaction_s);
-  const double pace = std::min({fastest, lead.left_m / until_s, lead.left_m / step});
+  const double pace = std::min({fastest, around.pace_mps[party_[person]], lead.left_m / step});
   const Point at = now.position[person];
   const Point is = now.velocity[person];
   const double take = 1 / options_.reaction_s;
   Point force = take * (pace * lead.direction - is);
-  const double calm = std::clamp(lead.left_m / kHandle_m, 0.0, 1.0);
   const Point pixel = scene_.floor.to_pixel(at);
   const Point background = to_floor_vector(bilinear(scene_.background_field, pixel));
-  force = force + options_.background_force * calm * 0.5 * fastest * take * background;
+  force = force + options_.background_force * lead.calm * 0.5 * fastest * take * background;
   const StrokeFlow* stroke = stroke_of(person, leg);
   if (stroke != nullptr && lead.on_stroke > 0 && options_.flow_force > 0) {
-    const auto& flow = now.flow[stroke_[person][leg]];
+    const auto& flow = *now.flow[stroke_[person][leg]];
     const Point u = scene_.floor.pixel_m * to_floor_vector(stroke->flow.velocity(flow, pixel));
     // No faster than she has to be: the flow's speed belongs to the fluid, its direction to her.
     force = force + options_.flow_force * lead.on_stroke * take * (at_most(u, pace) - is);
   }
-  force = force + options_.people_force * calm * particles[person];
+  const bool minds = !around.taken.empty();
+  if (minds) {
+    const Point particles = particle_acceleration(fluid_, around.people, around.taken, around.near, person);
+    force = force + options_.people_force * lead.calm * particles;
+  }
   force = at_most(force, kAccelerations * fastest * take);
-  force = force + from_discs(at, task_.radius_m[person], fastest, discs);
-  const Point velocity = at_most(is + step * force, fastest);
+  force = force + from_discs(at, task_.radius_m[person], fastest, around.discs);
+  Point velocity = at_most(is + step * force, fastest);
+  if (minds) velocity = queued(person, velocity, around);
   const Point to = walked(at, at + step * velocity);
   next.position[person] = to;
   // A slide along a wall ends with the speed that it had.
@@ -352,17 +412,30 @@ void PaintedModel::move(std::size_t person, const State& now, State& next, const
 }
 
 void PaintedModel::step(const State& now, State& next) const {
-  Neighbours near;
-  near.sort(now.position, fluid_.reach_m);
-  const std::vector<Point> particles = options_.people_force > 0
-                                           ? particle_accelerations(fluid_, near, now.position, now.velocity)
-                                           : std::vector<Point>(now.position.size());
-  const auto discs = task_.floor->discs(static_cast<double>(now.tick) * options_.step_s);
-  if (options_.flow_force > 0) {
-    for_each_index(flows_.size(), "motion", {},
-                   [&](std::size_t f) { flows_[f].flow.step(now.flow[f], next.flow[f], options_.step_s); });
+  const std::size_t people = now.position.size();
+  Around around;
+  around.near.sort(now.position, 2 * widest_m_);
+  around.lead.resize(people);
+  in_chunks(people, [&](std::size_t person) { around.lead[person] = guidance(person, now, next); });
+  around.pace_mps = paces(around.lead, next);
+  // Who is at her place needs no more room than her body: a shape may be as full as its cells are.
+  around.spacing_m.resize(people);
+  for (std::size_t i = 0; i < people; ++i) {
+    const double body = 2 * kRoomShare * task_.radius_m[i];
+    around.spacing_m[i] = body + around.lead[i].calm * (spacing_m_[i] - body);
   }
-  in_chunks(now.position.size(), [&](std::size_t person) { move(person, now, next, particles, discs); });
+  around.people = {now.position, now.velocity, around.spacing_m, widest_m_};
+  if (options_.people_force > 0) around.taken = floor_taken(around.people, around.near);
+  around.discs = task_.floor->discs(static_cast<double>(now.tick) * options_.step_s);
+  if (options_.flow_force > 0) {
+    for_each_index(flows_.size(), "motion", {}, [&](std::size_t f) {
+      if (now.flow[f]->steady) return;
+      auto flow = std::make_shared<GridFlow::State>(*now.flow[f]);
+      flows_[f].flow.step(*now.flow[f], *flow, options_.step_s);
+      next.flow[f] = std::move(flow);
+    });
+  }
+  in_chunks(people, [&](std::size_t person) { move(person, now, next, around); });
 }
 
 }  // namespace footlight::planner

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/motion/painted_options.hpp"
@@ -26,12 +28,17 @@ namespace footlight::planner {
 /// where she is, and no longer once she has passed its head; the others are accelerations beside it. Before a stroke,
 /// and where no stroke leads, people take the shortest free way. What would bring anybody nearer to something blocked
 /// than it may is cut off at the contact and goes on along it: nobody can enter an obstacle.
+///
+/// People at rest are as far apart as `kFill` of the cells make room for, and nobody pushes who queues: towards
+/// somebody ahead who wants the same way a person closes in only as the room between them allows within her reaction.
+/// Without it everybody's drive would add up towards a door, and no pressure of a fluid could hold the crowd apart.
 class PaintedModel {
  public:
   struct State : Crowd {
-    std::vector<std::uint32_t> leg;     ///< on which leg she is
-    std::vector<double> along;          ///< index into her stroke's line as far as she has come; its end: passed
-    std::vector<GridFlow::State> flow;  ///< of each stroke, as `flows_`
+    std::vector<std::uint32_t> leg;  ///< on which leg she is
+    std::vector<double> along;       ///< index into her stroke's line as far as she has come; its end: passed
+    /// Of each stroke, as `flows_`; one generation's is the next one's as long as nothing changes in it.
+    std::vector<std::shared_ptr<const GridFlow::State>> flow;
   };
 
   /// @param task, scene outlive this; task.from are the centres of the scene's begin cells, in any order
@@ -61,6 +68,17 @@ class PaintedModel {
     Point direction;       ///< of length 1 or 0
     double left_m = 0;     ///< of her way
     double on_stroke = 0;  ///< 0..1
+    double calm = 1;       ///< 0..1: how much the others and the background count; less near her waypoint
+  };
+  /// What everybody's step reads beside the generation before.
+  struct Around {
+    Neighbours near;
+    Particles people;
+    std::vector<double> spacing_m;  ///< of each person now
+    std::vector<double> taken;      ///< share of the floor around each; empty: nobody minds the others
+    std::vector<Guidance> lead;
+    std::vector<double> pace_mps;  ///< of each party
+    std::vector<MotionFloor::Disc> discs;
   };
 
   void find_people();
@@ -73,8 +91,9 @@ class PaintedModel {
   [[nodiscard]] Point from_discs(Point at, double radius_m, double speed_mps,
                                  const std::vector<MotionFloor::Disc>& discs) const;
   [[nodiscard]] Point walked(Point from, Point to) const;
-  void move(std::size_t person, const State& now, State& next, const std::vector<Point>& particles,
-            const std::vector<MotionFloor::Disc>& discs) const;
+  [[nodiscard]] std::vector<double> paces(const std::vector<Guidance>& lead, const State& next) const;
+  [[nodiscard]] Point queued(std::size_t person, Point velocity, const Around& around) const;
+  void move(std::size_t person, const State& now, State& next, const Around& around) const;
   [[nodiscard]] Point to_floor_vector(Point pixels) const { return {pixels.x, -pixels.y}; }
 
   const MotionTask& task_;
@@ -87,7 +106,9 @@ class PaintedModel {
   std::vector<StrokeFlow> flows_;
   std::vector<std::vector<std::uint32_t>> stroke_;  ///< of each person on each leg; npos: none
   Raster<double> away_px_;                          ///< from what is blocked
-  Raster<double> clear_m_;  ///< from each pixel's middle, so far is free of everything that must be kept off
+  Raster<double> clear_m_;         ///< from each pixel's middle, so far is free of everything that must be kept off
+  std::vector<double> spacing_m_;  ///< of each person at rest
+  double widest_m_ = 0;
   ParticleFluid fluid_;
 };
 static_assert(MotionModel<PaintedModel>);

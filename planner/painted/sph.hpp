@@ -19,25 +19,30 @@ namespace footlight::planner {
 /// Laplacian of the viscosity kernel: (40 / (pi h^5)) (h - r), 1/m^4
 [[nodiscard]] double viscosity_laplacian(double r_m, double h_m);
 
-struct ParticleFluid {
-  double reach_m = 1;           ///< h
-  double rest_per_m2 = 1;       ///< people on a square metre who do not press each other
-  double stiffness = 1;         ///< m^4/s^2: pressure of one person a square metre too many, over a person's mass
-  double viscosity_m2ps = 0.5;  ///< how fast neighbours take on each other's velocity
+/// People as particles. All lists of one length.
+struct Particles {
+  std::span<const Point> position;
+  std::span<const Point> velocity;
+  std::span<const double> spacing_m;  ///< how far from the next one each person is at rest, > 0
+  double widest_m = 1;                ///< the largest of them
 };
 
-/// What people do to each other as particles of a fluid.
-///
-/// Source: Mueller et al. 2003, Eq. 3 (density), 10 and 12 (pressure, symmetric), 14 (viscosity); everybody has mass 1.
-/// Pressure is never negative: people press, they do not pull.
-/// @return acceleration of each person, m/s^2. Sums run in the order of `near`, in parallel over people with the same
-/// bytes for any number of threads. O(people x neighbours)
-[[nodiscard]] std::vector<Point> particle_accelerations(const ParticleFluid& fluid, const Neighbours& near,
-                                                        std::span<const Point> position,
-                                                        std::span<const Point> velocity);
+struct ParticleFluid {
+  double stiffness_m2ps2 = 1;   ///< pressure of twice the rest over it
+  double viscosity_m2ps = 0.5;  ///< how fast neighbours take on each other's velocity
+  double rest = 1;              ///< share of the floor that is taken where nobody presses
+};
 
-/// Eq. 3: people per square metre around each one, oneself included.
-[[nodiscard]] std::vector<double> particle_densities(double reach_m, const Neighbours& near,
-                                                     std::span<const Point> position);
+/// Eq. 3 of Mueller et al. 2003: share of the floor around each person that is taken, her own included. In place of a
+/// mass stands the area that somebody takes in a triangular lattice of her own spacing; two people feel each other
+/// within the sum of their spacings. In such a lattice it is 1 (0.9992, as the kernel samples it).
+/// O(people x neighbours)
+[[nodiscard]] std::vector<double> floor_taken(const Particles& people, const Neighbours& near);
+
+/// What the others do to a person as particles of a fluid: Mueller et al. 2003, Eq. 10 and 12 (pressure, symmetric) and
+/// 14 (viscosity). Pressure is never negative: people press, they do not pull.
+/// @param taken as `floor_taken` gives it  @return m/s^2. The sum runs in the order of `near`. O(neighbours)
+[[nodiscard]] Point particle_acceleration(const ParticleFluid& fluid, const Particles& people,
+                                          std::span<const double> taken, const Neighbours& near, std::size_t person);
 
 }  // namespace footlight::planner

@@ -10,6 +10,7 @@
 namespace footlight::planner {
 namespace {
 
+constexpr double kBeside_px = 1.2;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 double value(const Raster<double>& field, int x, int y) { return field.inside(x, y) ? field.at(x, y) : kFar; }
@@ -77,7 +78,7 @@ bool sees(const Raster<double>& away, Point from, Point to) {
     const int x = std::clamp(static_cast<int>(here.x), 0, away.width - 1);
     const int y = std::clamp(static_cast<int>(here.y), 0, away.height - 1);
     const double free = away.at(x, y);
-    if (free <= 0) return false;
+    if (free <= (walked > 1 ? kBeside_px : 0)) return false;
     // The middle of this pixel is so far from anything blocked, here is at most sqrt(1/2) beside it.
     walked += std::max(0.5, free - 1.5);
   }

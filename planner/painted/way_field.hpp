@@ -15,7 +15,8 @@ struct WayField {
 /// 1996): first order upwind solution of |grad length| = 1. O(pixels log pixels)
 [[nodiscard]] WayField way_field(const PixelSet& blocked, const PixelSet& goal);
 
-/// Whether nothing blocked lies on the straight line between two points. O(pixels passed)
+/// Whether nothing blocked lies on the straight line between two points, nor right beside it farther than a pixel from
+/// where it begins: what pixels show is not exact. O(pixels passed)
 /// @param away distance of each pixel's middle to the nearest blocked one's
 [[nodiscard]] bool sees(const Raster<double>& away, Point from, Point to);
 

@@ -161,7 +161,36 @@ def castle():
     return art
 
 
-PAINTINGS = {"kang-theatre": theatre, "kang-castle": castle}
+def s_curve(half_m, radius_m, turn_deg, lane_m):
+    """Straight ahead, to the left, to the right, straight ahead again: a line beside the one through the middle.
+
+    The middle one goes from x = -half_m to half_m; lane_m to its left is positive."""
+    turn = numpy.radians(turn_deg)
+    angle = numpy.linspace(0, turn, 24)
+    rise = radius_m * (1 - numpy.cos(turn))
+    reach = radius_m * numpy.sin(turn)
+    left = numpy.stack([-reach + (radius_m - lane_m) * numpy.sin(angle), radius_m - (radius_m - lane_m) * numpy.cos(angle)], 1)
+    back = angle[::-1]
+    right = numpy.stack([reach - (radius_m + lane_m) * numpy.sin(back), 2 * rise - radius_m + (radius_m + lane_m) * numpy.cos(back)], 1)
+    return numpy.vstack([[(-half_m, lane_m)], left, right, [(half_m, 2 * rise + lane_m)]]), 2 * rise
+
+
+def march():
+    """1,000 people march along a curve in four columns side by side (figure 8)."""
+    art = Painting(140, 72)
+    colours = ((230, 60, 60), (60, 90, 230), (240, 150, 30), (40, 170, 90))
+    strokes = ((230, 40, 140), (150, 60, 230), (190, 190, 20), (20, 190, 190))
+    for k, (colour, brush) in enumerate(zip(colours, strokes)):
+        lane = (1.5 - k) * 8.6
+        line, rise = s_curve(26, 26, 70, lane)
+        low = 36 - rise / 2
+        art.box(-69, low + lane - 3.9, -26, low + lane + 3.9, lighter(colour, 0.5))
+        art.box(26, low + rise + lane - 3.9, 69, low + rise + lane + 3.9, darker(colour, 0.5))
+        art.stroke([(-30, low + lane), *(line + (0, low))[1:-1], (30, low + rise + lane)], 3.2, brush)
+    return art
+
+
+PAINTINGS = {"kang-theatre": theatre, "kang-castle": castle, "kang-march": march}
 
 if __name__ == "__main__":
     shows = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2] / "shows")

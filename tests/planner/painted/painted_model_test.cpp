@@ -136,6 +136,64 @@ TEST(PaintedModel, PeopleKeepApartOnTheWayBetterThanWithoutParticles) {
   EXPECT_LT(with, 0.6 * without);
 }
 
+/// A room with a gate of 3 m on the way; everybody has to go through it.
+PaintedShow gate() {
+  PaintedShow one;
+  one.painter.box(54, 0, 66, 34, kGrey);
+  one.painter.box(54, 46, 66, 80, kGrey);
+  return one;
+}
+
+/// Distance to the nearest other one, of who is still on her way; mean over people and instants.
+double room_on_the_way(const Moved& moved, const std::vector<std::vector<Point>>& way) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& at : way) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (distance(at[i], moved.task.to[i]) < 3) continue;
+      double nearest = 1e9;
+      for (std::size_t k = 0; k < at.size(); ++k) {
+        if (k != i) nearest = std::min(nearest, distance(at[i], at[k]));
+      }
+      sum += nearest;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+TEST(PaintedModel, WhoQueuesAtAGateLeavesRoomForCells) {
+  const Moved moved(gate(), 80);
+  const auto way = moved.run();
+  EXPECT_GT(room_on_the_way(moved, way), 0.95);    // cells are a metre apart
+  EXPECT_LT(farthest_from_goal(moved, way), 0.6);  // and a wall beside the gate holds nobody
+}
+
+TEST(PaintedModel, WidePeopleKeepMoreRoom) {
+  Moved moved(gate(), 120);
+  const double narrow = room_on_the_way(moved, moved.run());
+  moved.task.radius_m.assign(moved.task.people(), 0.7);
+  EXPECT_GT(room_on_the_way(moved, moved.run()), 1.1 * narrow);
+}
+
+TEST(PaintedModel, WhoIsInFrontDoesNotHoldUpTheOthers) {
+  const Moved moved(PaintedShow(), 60);
+  const PaintedModel model(moved.task, moved.one.options, *moved.scene);
+  auto now = model.begin();
+  constexpr double kWalked_s = 5;  // nobody is near her place yet
+  for (int t = 0; t < int(kWalked_s / model.step_s()); ++t) {
+    auto next = now;
+    ++next.tick;
+    model.step(now, next);
+    now = next;
+  }
+  const auto front =
+      std::max_element(now.position.begin(), now.position.end(), [](Point a, Point b) { return a.x < b.x; });
+  const auto n = static_cast<std::size_t>(front - now.position.begin());
+  const double own_mps = distance(*front, moved.task.to[n]) / (0.7 * 60 - kWalked_s);
+  EXPECT_GT(length(now.velocity[n]), 1.1 * own_mps);
+}
+
 TEST(PaintedScene, WhoLeavesFirstOnAWayThatTurnsBackComesFirst) {
   PaintedShow one;
   one.painter.box(0, 0, 120, 80, {255, 255, 255});
