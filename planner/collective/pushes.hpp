@@ -27,7 +27,8 @@ class Around {
     y_[people_] = away.y;
     touch_m_[people_] = touch_m;
     stranger_[people_] = stranger ? 1 : 0;
-    const std::size_t taken = static_cast<std::size_t>(squared <= squared_reach) & static_cast<std::size_t>(squared > 0);
+    const std::size_t taken =
+        static_cast<std::size_t>(squared <= squared_reach) & static_cast<std::size_t>(squared > 0);
     people_ += taken;
     strangers_ += taken & static_cast<std::size_t>(stranger);
   }

@@ -13,8 +13,8 @@ namespace footlight::planner::lanes {
 inline constexpr std::size_t kLanes = 8;
 
 /// e^x, within 2 ulp; of less than -700 and more than 700 that of the limit.
-/// Source: Cody and Waite's reduction, x = n ln 2 + r, |r| <= ln 2 / 2, ln 2 in two parts as in fdlibm's e_exp.c; e^r by
-/// its series to r^13.
+/// Source: Cody and Waite's reduction, x = n ln 2 + r, |r| <= ln 2 / 2, ln 2 in two parts as in fdlibm's e_exp.c; e^r
+/// by its series to r^13.
 [[nodiscard]] inline double exp(double x) {
   constexpr double kRound = 0x1.8p52;  // adding it rounds to a whole number, which the low bits then are
   const double at_least = x > -700.0 ? x : -700.0;

@@ -42,6 +42,7 @@ Result<Landscape> Landscape::make(const MotionTask& task, const SwarmOptions& op
   out.still_scope_m_ = std::max(ways.keep_m(), options.person_m.value_or(0));
   const double floor_m = distance(out.floor_->low(), out.floor_->high());
   out.per_floor_square_ = floor_m > 0 ? 1 / (floor_m * floor_m) : 1;
+  out.hardest_ = std::exp(-options.hardness);
   if (!ways.open()) out.passages_ = std::make_unique<Passages>(ways);
   out.look_around();
   out.sort_into_crowds();
@@ -224,14 +225,12 @@ double Landscape::still_squared(Point at, double beyond) const {
   return std::min(beyond, near->distance_m * near->distance_m / (still_scope_m_ * still_scope_m_));
 }
 
-bool Landscape::step_is_free(Point from, Point to) const {
-  if (!open_around(from)) return floor_->free_share(from, to) >= 1;
+bool Landscape::step_is_free(Point from, Point to, bool open) const {
+  if (!open) return floor_->free_share(from, to) >= 1;
   const Point low = floor_->low();
   const Point high = floor_->high();
   return to.x >= low.x && to.x <= high.x && to.y >= low.y && to.y <= high.y;
 }
-
-double Landscape::ground_cost(Point at) const { return std::exp(-options_.hardness) * (1 - floor_->speed_factor(at)); }
 
 WayField::Toward Landscape::toward(std::size_t person, Point at, Point target, double at_s) const {
   const Ways& ways = floor_->ways();

@@ -48,16 +48,18 @@ class Landscape {
   [[nodiscard]] double value(double weighed, double to_target_m) const {
     return objective(weighed, to_target_m * to_target_m * per_floor_square_);
   }
+  [[nodiscard]] double per_floor_square() const { return per_floor_square_; }
   /// |P - Q|^2 / sigma^2 of the nearest blocked point Q, or `beyond` where that is more. O(1) far from everything.
   [[nodiscard]] double still_squared(Point at, double beyond) const;
   /// Nothing blocked within a step and a scope: only the edge of the floor may end a walk.
   [[nodiscard]] bool open_around(Point at) const {
     return open_.empty() || open_[floor_->ways().grid().nearest(at).at()] != 0;
   }
-  [[nodiscard]] bool step_is_free(Point from, Point to) const;
+  /// @param open as `open_around(from)`
+  [[nodiscard]] bool step_is_free(Point from, Point to, bool open) const;
   /// The ground as one more object: e^-k times the share of speed that is lost here, so that Eq. 10 lets people go on
   /// with just the share that is left.
-  [[nodiscard]] double ground_cost(Point at) const;
+  [[nodiscard]] double ground_cost(Point at) const { return hardest_ * (1 - floor_->speed_factor(at)); }
   [[nodiscard]] double speed_factor(Point at) const { return floor_->speed_factor(at); }
 
   /// Where somebody goes straight so as to come to her target around what is blocked.
@@ -91,6 +93,7 @@ class Landscape {
   std::vector<double> scope_m_;
   double still_scope_m_ = 0;
   double per_floor_square_ = 1;
+  double hardest_ = 1;                  ///< e^-k
   std::vector<char> open_;              ///< one flag a cell; empty: nothing is blocked
   std::unique_ptr<Passages> passages_;  ///< nothing is blocked: none
   /// Of each crowd, for equal stretches of time.

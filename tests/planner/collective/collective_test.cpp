@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "core/terrain.hpp"
 #include "planner/collective/social_crowd.hpp"
 #include "planner/motion/models.hpp"
 #include "tests/planner/collective/task_builder.hpp"
@@ -276,6 +277,74 @@ TEST(SocialCrowd, TwoWhoMeetPushEachOtherAlike) {
   const double expected = 0.2 * std::exp(-0.1 / 0.3);
   EXPECT_NEAR(next.velocity[0].x, -expected, 1e-12);
   EXPECT_NEAR(next.velocity[1].x, expected, 1e-12);
+}
+
+TEST(SocialCrowd, AWideOneAndANarrowOnePushEachOtherByTheRoomBetweenThem) {
+  FloorTask floor = task_on(30, 10, {}, {{-0.4, 5}, {0.4, 5}}, {{-0.4, 5}, {0.4, 5}}, 20);
+  floor.task.radius_m = {0.45, 0.25};
+  CollectiveOptions options;
+  options.fluctuation_mps2 = 0;
+  options.feedback = false;
+  const auto ways = TimedWays::make(floor.task, floor.task.to, nullptr, 18);
+  ASSERT_TRUE(ways);
+  const collective::SocialCrowd crowd(floor.task, options, *ways, {});
+  const auto now = crowd.begin();
+  auto next = now;
+  crowd.step(now, next);
+  // 0.8 m apart, touching at 0.7 m: 2 exp(-0.1 / 0.3) m/s^2 for 0.1 s, as two of 0.25 m do at 0.6 m.
+  const double expected = 0.2 * std::exp(-0.1 / 0.3);
+  EXPECT_NEAR(next.velocity[0].x, -expected, 1e-12);
+  EXPECT_NEAR(next.velocity[1].x, expected, 1e-12);
+}
+
+TEST(SocialCrowd, WhoCannotArriveInTimeWalksAsFastAsSheCanOnTheGroundThereIs) {
+  FloorTask floor = task_on(60, 10, {}, {{-20, 3}, {-20, 7}}, {{20, 3}, {20, 7}}, 21);
+  floor.task.speed_mps = {1.4, 0.9};
+  Terrain slow;
+  slow.slowest = 0.4;
+  slow.width = slow.height = 1;
+  slow.grey = {255};  // everywhere
+  const MotionFloor hills(*floor.ways, {}, TempoMap(60), kStart, &slow);
+  CollectiveOptions options;
+  options.fluctuation_mps2 = 0;
+  options.feedback = false;
+  for (const bool level : {true, false}) {
+    if (!level) floor.task.floor = &hills;
+    const auto ways = TimedWays::make(floor.task, floor.task.to, nullptr, 20);
+    ASSERT_TRUE(ways);
+    const collective::SocialCrowd crowd(floor.task, options, *ways, {});
+    auto now = crowd.begin();
+    for (int k = 0; k < 60; ++k) {
+      auto next = now;
+      ++next.tick;
+      crowd.step(now, next);
+      now = next;
+    }
+    // 40 m in 20 s are more than either can: her own limit, and 0.4 of it on the hills.
+    EXPECT_NEAR(now.velocity[0].x, level ? 1.4 : 0.56, 1e-4);
+    EXPECT_NEAR(now.velocity[1].x, level ? 0.9 : 0.36, 1e-4);
+  }
+}
+
+TEST(Collective, SlowPeopleAreNotOverrunAndEverybodyArrives) {
+  const Grid grid = floor_of(60, 16);
+  // Twelve files become six: ways cross, and the slow are among the quick.
+  FloorTask floor = task_on(60, 16, {}, block_of(grid, {2, 4}, 12, 3, 2), block_of(grid, {46, 2}, 6, 6, 2), 66);
+  for (std::size_t p = 0; p < 36; p += 3) {
+    floor.task.speed_mps[p] = 0.8;
+    floor.task.radius_m[p] = 0.4;
+  }
+  const auto led = move_crowd(floor.task, CollectiveOptions{}, {});
+  ASSERT_TRUE(led) << led.error();
+  EXPECT_LT(farthest_off(floor.task, *led), 0.3);
+  for (std::size_t k = 0; k < led->at.size(); ++k) {
+    for (std::size_t a = 0; a < 36; ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const double touch_m = floor.task.radius_m[a] + floor.task.radius_m[b];
+        ASSERT_GT(distance(led->at[k][a], led->at[k][b]), 0.95 * touch_m) << a << " and " << b << " at " << k;
+      }
+    }
+  }
 }
 
 TEST(SocialCrowd, FeedbackBringsHeadingsTogether) {

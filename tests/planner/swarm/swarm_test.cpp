@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/rng.hpp"
+#include "planner/motion/models.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/swarm/collisions.hpp"
 #include "planner/swarm/original.hpp"
@@ -103,6 +104,44 @@ TEST(Swarm, NobodyTouchesAnybodyInTheProposedOne) {
       RC_ASSERT(near_pairs(walks, 0.5 - 1e-6).empty());
     });
   }));
+}
+
+TEST(Swarm, NobodyTouchesAnybodyHoweverWideOrQuickTheyAre) {
+  EXPECT_TRUE(rc::check([] {
+    const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+    Scene scene = any_scene(seed);
+    Rng rng(seed);
+    MotionTask& task = scene.task();
+    for (double& radius_m : task.radius_m) radius_m = 0.2 + 0.25 * rng.uniform();
+    const auto landscape = Landscape::make(task, {});
+    if (!landscape) return;
+    step_through(ProposedSwarm(*landscape), 60, [&](const auto& now, const auto& next) {
+      std::vector<Walk> walks;
+      for (std::size_t p = 0; p < now.position.size(); ++p) walks.push_back({now.position[p], next.position[p]});
+      for (const NearPair& pair : near_pairs(walks, 0.9)) {
+        RC_ASSERT(pair.approach.distance_m >= task.radius_m[pair.a] + task.radius_m[pair.b] - 1e-6);
+      }
+    });
+  }));
+}
+
+TEST(Swarm, SlowPeopleAreNotOverrunAndEverybodyArrives) {
+  Scene scene(44, 14);
+  for (int n = 0; n < 30; ++n) {  // every second cell: between two of their places the widest can pass
+    const std::string from = cell_name({2 * (n % 5), 2 * (n / 5)});
+    const std::string to = cell_name({34 + 2 * (n % 5), 2 * (n / 5)});
+    scene.send(from + ":" + from, to + ":" + to);
+  }
+  MotionTask& task = scene.task();
+  for (std::size_t p = 0; p < task.people(); p += 3) {
+    task.speed_mps[p] = 0.8;
+    task.radius_m[p] = 0.4;
+  }
+  task.at_s = {0, 100};
+  const auto led = move_crowd(task, SwarmOptions{}, {});
+  ASSERT_TRUE(led) << led.error();
+  EXPECT_EQ(led->notes.back(), "the swarm has 0 collisions between people and 0 with obstacles on its way")
+      << "with the room of each, and nobody is late";
 }
 
 TEST(Swarm, PlacesStayAPermutationWhenTheyAreExchanged) {
