@@ -14,6 +14,8 @@ import cv2
 import numpy
 
 PIXELS = 4  # a metre
+LANE_M = 8.6  # of the march, from middle to middle
+LANE_HALF_M = 3.2
 GREY = (128, 128, 128)
 WHITE = (255, 255, 255)
 
@@ -181,12 +183,12 @@ def march():
     colours = ((230, 60, 60), (60, 90, 230), (240, 150, 30), (40, 170, 90))
     strokes = ((230, 40, 140), (150, 60, 230), (190, 190, 20), (20, 190, 190))
     for k, (colour, brush) in enumerate(zip(colours, strokes)):
-        lane = (1.5 - k) * 8.6
+        lane = (1.5 - k) * LANE_M
         line, rise = s_curve(26, 26, 70, lane)
         low = 36 - rise / 2
         art.box(-69, low + lane - 3.9, -26, low + lane + 3.9, lighter(colour, 0.5))
         art.box(26, low + rise + lane - 3.9, 69, low + rise + lane + 3.9, darker(colour, 0.5))
-        art.stroke([(-30, low + lane), *(line + (0, low))[1:-1], (30, low + rise + lane)], 3.2, brush)
+        art.stroke([(-30, low + lane), *(line + (0, low))[1:-1], (30, low + rise + lane)], LANE_HALF_M, brush)
     return art
 
 
