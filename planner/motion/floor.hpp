@@ -44,6 +44,8 @@ class MotionFloor {
   };
   [[nodiscard]] std::vector<Disc> discs(double at_s) const;
 
+  /// The ground slows nobody down.
+  [[nodiscard]] bool level() const { return terrain_ == nullptr; }
   /// Share of everybody's speed that the ground leaves at a point, above 0 and at most 1. O(1)
   [[nodiscard]] double speed_factor(Point at) const {
     return terrain_ == nullptr ? 1 : terrain_->speed_factor(at, terrain_low_, terrain_high_);

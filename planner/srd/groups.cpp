@@ -12,6 +12,7 @@
 
 #include "core/check.hpp"
 #include "planner/assignment/assignment.hpp"
+#include "planner/srd/open_ranks.hpp"
 
 namespace footlight::planner::srd {
 namespace {
@@ -63,6 +64,7 @@ class Division {
       if (auto error = settle(band)) return *error;
       if (auto error = time(band)) return *error;
     }
+    open_ranks(tasks_, options_, floor_, task_, out_);
     return std::move(out_);
   }
 
@@ -115,15 +117,35 @@ class Division {
     return std::nullopt;
   }
 
+  /// Around what is blocked so far off that the formation is not bent by it, where there is so much room, else half as
+  /// far, and so on.
+  [[nodiscard]] std::vector<Point> wide_way(Point from, Point to, double radius_m) const {
+    const Ways& ways = floor_.floor().ways();
+    if (ways.straight(from, to)) return {from, to};
+    Stage stage;
+    stage.grid = ways.grid();
+    stage.blocked = ways.blocked();
+    for (const double share : {1.0, 0.5, 0.25}) {
+      const Ways wide(stage, ways.keep_m() + share * radius_m);
+      if (!wide.straight(from, from) || !wide.straight(to, to)) continue;
+      auto way = wide.way(from, to);
+      if (!way.empty()) return way;
+    }
+    return ways.way(from, to);
+  }
+
   /// The way of a group's centre.
   std::optional<Error> lead(Band& band) {
-    band.corners.push_back(floor_.free_place(middle(task_.from, band.people)));
+    const Point from = middle(task_.from, band.people);
+    band.corners.push_back(floor_.free_place(from));
+    double radius_m = 0;
+    for (const std::uint32_t i : band.people) radius_m = std::max(radius_m, distance(task_.from[i], from));
     std::vector<Point> through = band.path;
     if (!band.places.empty()) through.push_back(floor_.free_place(middle(task_.to, band.places)));
     for (const Point at : through) {
       const Point here = band.corners.back();
       if (distance(here, at) < 1e-9) continue;
-      const auto way = floor_.floor().ways().way(here, at);
+      const auto way = wide_way(here, at, radius_m);
       if (way.empty()) {
         return input_error(fmt::format("there is no way around the blocked cells from {} to {}", told(here), told(at)));
       }
@@ -161,7 +183,7 @@ class Division {
   }
 
   std::optional<Error> time(const Band& band) {
-    March::Task march{band.corners, {}, {}, task_.duration_s()};
+    March::Task march{band.corners, {}, {}, task_.duration_s(), {}, task_.floor};
     for (const std::uint32_t i : band.people) {
       march.offsets.push_back(out_.offsets[i]);
       march.speed_mps.push_back(task_.speed_mps[i]);
@@ -169,6 +191,7 @@ class Division {
     auto planned = March::plan(march, options_);
     if (!planned) return planned.error();
     out_.march.push_back(std::move(*planned));
+    tasks_.push_back(std::move(march));
     return std::nullopt;
   }
 
@@ -191,6 +214,7 @@ class Division {
   const SrdOptions& options_;
   const FreeFloor& floor_;
   std::vector<Band> bands_;
+  std::vector<March::Task> tasks_;  ///< of each march
   Groups out_;
 };
 

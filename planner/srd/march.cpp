@@ -61,14 +61,16 @@ std::vector<double> headings(const Line& line, std::size_t frames, double corner
 
 Placing::Placing(const Frame& frame)
     : centre_(frame.centre),
-      from_((1 - frame.share) * Point{std::cos(frame.turn_from), std::sin(frame.turn_from)}),
-      to_(frame.share * Point{std::cos(frame.turn_to), std::sin(frame.turn_to)}) {}
+      from_((1 - frame.share) * frame.spread * Point{std::cos(frame.turn_from), std::sin(frame.turn_from)}),
+      to_(frame.share * frame.spread * Point{std::cos(frame.turn_to), std::sin(frame.turn_to)}) {}
 
 Result<March> March::plan(const Task& task, const SrdOptions& options) {
   FL_CHECK(!task.corners.empty() && task.duration_s > 0 && task.offsets.size() == task.speed_mps.size());
   March march;
   march.corners_ = task.corners;
   march.lay_frames(options);
+  FL_CHECK(task.spread.empty() || task.spread.size() == march.frames_.size());
+  for (std::size_t k = 0; k < task.spread.size(); ++k) march.frames_[k].spread = task.spread[k];
   const std::vector<double> least = march.least_times(task, options);
   // At least so long from frame to frame when the whole march may take `whole_s`.
   const auto total = [&](double whole_s) {
@@ -122,16 +124,23 @@ void March::lay_frames(const SrdOptions& options) {
 
 std::vector<double> March::least_times(const Task& task, const SrdOptions& options) const {
   std::vector<double> out(frames_.size() - 1, 0);
+  const bool centre_alone = options.orientation == SrdOptions::Orientation::path;
+  const bool level = task.floor == nullptr || task.floor->level();
+  const auto ground = [&](Point at) { return level ? 1 : task.floor->speed_factor(at); };
   const double slowest_mps =
       task.speed_mps.empty() ? 1 : *std::min_element(task.speed_mps.begin(), task.speed_mps.end());
   tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t k) {
-    out[k] = distance(frames_[k].centre, frames_[k + 1].centre) / (kEase * slowest_mps);
-    if (options.orientation == SrdOptions::Orientation::path) return;
+    const double centre_m = distance(frames_[k].centre, frames_[k + 1].centre);
+    out[k] = centre_m / (kEase * slowest_mps);
+    if (centre_alone && level) return;
     const Placing here(frames_[k]);
     const Placing there(frames_[k + 1]);
     for (std::size_t i = 0; i < task.offsets.size(); ++i) {
-      const double moved_m = distance(here(task.offsets[i]), there(task.offsets[i]));
-      out[k] = std::max(out[k], moved_m / (kEase * task.speed_mps[i]));
+      const Point from = here(task.offsets[i]);
+      const Point to = there(task.offsets[i]);
+      const double moved_m = centre_alone ? centre_m : distance(from, to);
+      const double pace_mps = task.speed_mps[i] * std::min(ground(from), ground(to));
+      out[k] = std::max(out[k], moved_m / (kEase * pace_mps));
     }
   });
   return out;
@@ -154,7 +163,7 @@ Frame March::at(double at_s) const {
   const double share = (at_s - at_s_[n - 1]) / (at_s_[n] - at_s_[n - 1]);
   const auto mix = [&](double from, double to) { return from + share * (to - from); };
   return {a.centre + share * (b.centre - a.centre), mix(a.turn_from, b.turn_from), mix(a.turn_to, b.turn_to),
-          mix(a.share, b.share)};
+          mix(a.share, b.share), mix(a.spread, b.spread)};
 }
 
 }  // namespace footlight::planner::srd

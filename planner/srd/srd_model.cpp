@@ -6,16 +6,10 @@
 #include <utility>
 
 #include "core/rng.hpp"
+#include "planner/srd/open_ranks.hpp"
 #include "planner/srd/srd_step.hpp"
 
 namespace footlight::planner::srd {
-namespace {
-
-/// A formation whose neighbours are so many times as far apart as two people may come near lets others through.
-constexpr double kPassable = 2.4;
-
-}  // namespace
-
 SrdModel::SrdModel(const MotionTask& task, const SrdOptions& options)
     : task_(&task), options_(options), floor_(*task.floor) {}
 
@@ -53,19 +47,10 @@ void SrdModel::make_room() {
   const double look_m = kPassable * options_.room_m;
   for (const auto* places : {&task_->from, &task_->to}) {
     if (places->empty() || look_m <= 0) continue;
-    Neighbours crowd;
-    crowd.sort(*places, look_m);
-    std::vector<double> room(places->size());
-    for (std::size_t n = 0; n < places->size(); ++n) {
-      double nearest = look_m * look_m;
-      crowd.visit((*places)[n], look_m, [&](std::uint32_t other, double squared) {
-        if (other != n) nearest = std::min(nearest, squared);
-      });
-      room[n] = std::sqrt(nearest) / kPassable / 2;
-    }
+    const std::vector<double> nearest = nearest_others(*places, look_m);
     for (std::size_t i = 0; i < radius_m_.size(); ++i) {
-      const double here = room[places == &task_->from ? i : groups_.place_of[i]];
-      room_m[i] = std::min(room_m[i], here);
+      const double here_m = nearest[places == &task_->from ? i : groups_.place_of[i]];
+      room_m[i] = std::min(room_m[i], here_m / kPassable / 2);
     }
   }
   for (std::size_t i = 0; i < radius_m_.size(); ++i) {

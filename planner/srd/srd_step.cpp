@@ -32,6 +32,7 @@ SrdModel::Step::Step(const SrdModel& model, const State& now, State& next)
       next_(next),
       at_s_(options_.step_s * static_cast<double>(now.tick + 1)),
       discs_(task_.floor->discs(at_s_)),
+      pace_mps_(task_.speed_mps),
       destination_(task_.people()),
       destination_mps_(task_.people()),
       predicted_(task_.people()),
@@ -70,7 +71,9 @@ void SrdModel::Step::plan() {
     before.emplace_back(march.at(at_s_ - options_.step_s));
     after.emplace_back(march.at(at_s_));
   }
+  const bool level = task_.floor->level();
   for_people([&](std::size_t i) {
+    if (!level) pace_mps_[i] *= task_.floor->speed_factor(now_.position[i]);
     const auto group = static_cast<std::size_t>(model_.groups_.of[i]);
     const Offsets& offsets = model_.groups_.offsets[i];
     if (options_.formation) {
@@ -80,7 +83,7 @@ void SrdModel::Step::plan() {
       plan_for_herself(i);
     }
     const Point blended = (1 - options_.blending) * now_.velocity[i] + options_.blending * destination_mps_[i];
-    predicted_[i] = now_.position[i] + options_.step_s * within(blended, task_.speed_mps[i]);
+    predicted_[i] = now_.position[i] + options_.step_s * within(blended, pace_mps_[i]);
   });
 }
 
@@ -90,7 +93,7 @@ void SrdModel::Step::plan_in_formation(std::size_t i, Point destination, Point v
   const Point here = now_.position[i];
   // The formation does not bring back who is out of it, and by steering alone she would be long in coming.
   if (now_.released[i] != 0 && distance(here, destination) > options_.congestion_m / 2) {
-    destination_mps_[i] = seek(here, destination_[i], velocity, kArrive_s, task_.speed_mps[i]);
+    destination_mps_[i] = seek(here, destination_[i], velocity, kArrive_s, pace_mps_[i]);
   }
   go_around(i);
 }
@@ -115,7 +118,7 @@ void SrdModel::Step::plan_for_herself(std::size_t i) {
   const double left_s = std::max(march.arrives_s() - (at_s_ - options_.step_s), options_.step_s);
   go_around(i);
   destination_mps_[i] =
-      within(1 / options_.step_s * (destination_[i] - now_.position[i]), std::min(task_.speed_mps[i], left_m / left_s));
+      within(1 / options_.step_s * (destination_[i] - now_.position[i]), std::min(pace_mps_[i], left_m / left_s));
 }
 
 /// Who does not see her destination goes to the next corner of the way there, as fast as she can.
@@ -128,7 +131,7 @@ void SrdModel::Step::go_around(std::size_t i) {
       now_.around[i] != 0 && distance(here, now_.corner[i]) > kReached_m && model_.floor_.sees(here, now_.corner[i]);
   if (!keeps) next_.corner[i] = model_.floor_.first_corner(here, destination_[i]);
   destination_[i] = next_.corner[i];
-  destination_mps_[i] = within(1 / options_.step_s * (destination_[i] - here), task_.speed_mps[i]);
+  destination_mps_[i] = within(1 / options_.step_s * (destination_[i] - here), pace_mps_[i]);
 }
 
 void SrdModel::Step::find_congestion() {
@@ -186,7 +189,7 @@ void SrdModel::Step::avoid() {
       const Moving it{disc.centre - options_.step_s * disc.velocity, disc.velocity};
       if (const auto one = avoidance(me, it, apart_m, options_.step_s, options_.horizon_s, k, 1)) sum = sum + *one;
     }
-    other_[i] = predicted_[i] + within(model_.agility_[i] * sum, options_.step_s * task_.speed_mps[i]);
+    other_[i] = predicted_[i] + within(model_.agility_[i] * sum, options_.step_s * pace_mps_[i]);
   });
   predicted_.swap(other_);
 }
@@ -218,7 +221,7 @@ Point SrdModel::Step::corrected(std::size_t i) const {
   const Point low = task_.floor->low();
   const Point high = task_.floor->high();
   to = {std::clamp(to.x, low.x, high.x), std::clamp(to.y, low.y, high.y)};
-  return now_.position[i] + within(to - now_.position[i], options_.step_s * task_.speed_mps[i]);
+  return now_.position[i] + within(to - now_.position[i], options_.step_s * pace_mps_[i]);
 }
 
 void SrdModel::Step::guard() {
@@ -269,13 +272,13 @@ Point SrdModel::Step::allowed(std::size_t i, Point step) const {
     const double there = dot(step, toward);
     if (there > most) share = std::min(share, most / there);
   });
-  return within(share * step, options_.step_s * task_.speed_mps[i]);
+  return within(share * step, options_.step_s * pace_mps_[i]);
 }
 
 /// v_d of Eq. 10.
 Point SrdModel::Step::desired(std::size_t i) const {
   if (next_.around[i] != 0) return destination_mps_[i];
-  return seek(predicted_[i], destination_[i], destination_mps_[i], kArrive_s, task_.speed_mps[i]);
+  return seek(predicted_[i], destination_[i], destination_mps_[i], kArrive_s, pace_mps_[i]);
 }
 
 void SrdModel::Step::move() {
@@ -283,7 +286,7 @@ void SrdModel::Step::move() {
     next_.position[i] = predicted_[i];
     Point velocity = 1 / options_.step_s * (predicted_[i] - now_.position[i]);
     if (options_.formation) velocity = velocity + options_.steering * (desired(i) - velocity);
-    next_.velocity[i] = within(velocity, task_.speed_mps[i]);
+    next_.velocity[i] = within(velocity, pace_mps_[i]);
   });
 }
 

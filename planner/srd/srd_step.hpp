@@ -47,6 +47,7 @@ class SrdModel::Step {
   State& next_;
   double at_s_;  ///< at the end of the step
   std::vector<MotionFloor::Disc> discs_;
+  std::vector<double> pace_mps_;        ///< the fastest that each person can go on her ground
   std::vector<Point> destination_;      ///< where each person wants to be at the end of the step
   std::vector<Point> destination_mps_;  ///< how that moves
   std::vector<Point> predicted_;        ///< p*

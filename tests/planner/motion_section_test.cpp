@@ -176,6 +176,48 @@ TEST(MotionSection, AgilityAndReactionOfAGroupsPeopleReachTheModel) {
   EXPECT_EQ(planned_of(own).plan.tracks, planned_of(srd_show(3, 2)).plan.tracks);
 }
 
+/// Two blocks of 6 x 6, a metre from neighbour to neighbour, that change sides on cells of half a metre.
+Show dense_show(const std::vector<Cell>& blocked = {}) {
+  Show show = show_with(72);
+  show.stage.grid = *Grid::make(GridKind::square, 120, 60, 0.5);
+  const Grid& grid = show.stage.grid;
+  for (const Cell cell : blocked) show.stage.blocked.push_back(grid.index(cell));
+  std::sort(show.stage.blocked.begin(), show.stage.blocked.end());
+  show.tempo = TempoMap(120);
+  show.groups = {{"left", {}, true}, {"right", {}, true}};
+  std::vector<CellIndex> from;
+  std::vector<CellIndex> to;
+  std::vector<std::optional<GroupIndex>> groups;
+  for (int p = 0; p < 72; ++p) {
+    const int n = p / 2;
+    const Cell left{10 + 2 * (n % 6), 24 + 2 * (n / 6)};
+    const Cell right{100 + 2 * (n % 6), 24 + 2 * (n / 6)};
+    from.push_back(grid.index(p % 2 == 0 ? left : right));
+    to.push_back(grid.index(p % 2 == 0 ? right : left));
+    groups.emplace_back(GroupIndex::of(p % 2));
+    show.performers[static_cast<std::size_t>(p)].group = groups.back();
+  }
+  show.sections.push_back(section_of("begin", listed(from, groups), 1, 0, 4, 30));
+  Motion motion;
+  motion.options = SrdOptions{};
+  add_motion(show, "cross", listed(to, groups), 6, 160, std::move(motion));
+  show.sections[1].planner.model = PlannerModel::srd;
+  return show;
+}
+
+TEST(MotionSection, DenseFormationsCrossHeadOnOnCells) {
+  std::vector<Cell> wall;
+  std::vector<Cell> gate;
+  for (int row = 0; row < 60; ++row) {
+    if (row >= 22 && row < 38) wall.push_back({60, row});
+    if (row < 20 || row >= 40) gate.push_back({60, row});
+  }
+  for (const auto& blocked : {std::vector<Cell>{}, wall, gate}) {
+    const Planned planned = planned_of(dense_show(blocked));
+    EXPECT_TRUE(planned.plan.valid) << blocked.size() << testing::PrintToString(planned.refusal);
+  }
+}
+
 TEST(MotionSection, PeopleWhoAreNamedBeforeKeepTheirNames) {
   Show show = crossing_show();
   auto& begin = std::get<CellsSource>(show.sections[0].from);

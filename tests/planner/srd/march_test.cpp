@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner/srd/march.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "tests/planner/srd/srd_tasks.hpp"
 
 namespace footlight::planner::srd {
 namespace {
@@ -120,6 +123,29 @@ TEST(March, AlsoChangesFormationOnTheSpot) {
   const auto march = March::plan({{{0, 5}}, {offsets}, {1.4}, 20}, options_with(SrdOptions::Orientation::wheel));
   ASSERT_TRUE(march);
   EXPECT_NEAR(distance(Placing(march->at(10))(offsets), {0, 5}), 0, 1e-9);
+}
+
+TEST(March, WaitsForWhoIsOnSlowGround) {
+  // A pixel a metre: level until half a metre before the centre line, half of the speed from half a metre behind it on.
+  std::vector<std::uint8_t> grey(60, 0);
+  std::fill(grey.begin() + 30, grey.end(), 255);
+  const test::TaskFloor floor(60, 40, {}, {}, test::ground_of(grey));
+  for (const auto orientation : {SrdOptions::Orientation::fixed, SrdOptions::Orientation::path}) {
+    SrdOptions options = options_with(orientation);
+    options.group_speed_mps = 20;
+    March::Task task{{{-10, 20}, {10, 20}}, {{}}, {1.4}, 60};
+    // 85 % of 1.4 m/s.
+    EXPECT_NEAR(March::plan(task, options)->arrives_s(), 20 / 1.19, 1e-6);
+    task.floor = floor.floor.get();
+    // 9.5 m level and 9.5 m slow; between them steps of a quarter of a metre, each by the slower of its ends.
+    const double between = 1 / 0.875 + 1 / 0.75 + 1 / 0.625 + 1 / 0.5;
+    EXPECT_NEAR(March::plan(task, options)->arrives_s(), (9.5 + 9.5 / 0.5 + 0.25 * between) / 1.19, 1e-6);
+    // Of two people 4 m from each other the one in front comes to the slow ground 2 m earlier, and the other leaves
+    // with her: all of the group is slow then.
+    task.offsets = {{{2, 0}, {2, 0}}, {{-2, 0}, {-2, 0}}};
+    task.speed_mps = {1.4, 1.4};
+    EXPECT_NEAR(March::plan(task, options)->arrives_s(), (7.5 + 11.5 / 0.5 + 0.25 * between) / 1.19, 1e-6);
+  }
 }
 
 TEST(March, SaysWhenTheGoalCannotBeReachedInTime) {

@@ -93,6 +93,77 @@ TEST(SrdModel, TwoFormationsCrossAndFindTheirFormationsAgain) {
   EXPECT_EQ(std::count(end.released.begin(), end.released.end(), 1), 0);
 }
 
+/// Everybody comes to her place, and nobody nearer to anybody than the clearance on the way.
+void expect_passed(const MotionTask& task) {
+  const SrdModel model = model_of(task);
+  std::size_t released = 0;
+  const auto end = run(model, task, [&](const auto&, const auto& next) {
+    EXPECT_GE(nearest_m(next.position), 0.5 - kRounding_m);
+    released += static_cast<std::size_t>(std::count(next.released.begin(), next.released.end(), 1));
+  });
+  EXPECT_GT(released, 100U);
+  const auto places = model.destinations(task.duration_s());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT(distance(end.position[i], places[i]), 0.05) << i;
+}
+
+TEST(SrdModel, DenseBlocksPassThroughEachOtherHeadOn) {
+  const TaskFloor floor(80, 30);
+  for (const double aside_m : {0.0, 0.3, 0.5}) {
+    MotionTask task = task_on(floor, 70);
+    add_group(task, 0, block({-30, 10}, 8, 8), block({22, 10}, 8, 8));
+    add_group(task, 1, block({22, 10 + aside_m}, 8, 8), block({-30, 10 + aside_m}, 8, 8));
+    SCOPED_TRACE(aside_m);
+    expect_passed(task);
+  }
+}
+
+TEST(SrdModel, DenseBlocksPassEachOtherAroundAWall) {
+  std::vector<Cell> wall;
+  for (int row = 12; row < 28; ++row) wall.push_back({40, row});
+  const TaskFloor floor(80, 50, wall);
+  MotionTask task = task_on(floor, 100);
+  add_group(task, 0, block({-25.5, 16.5}, 6, 8), block({20.5, 16.5}, 6, 8));
+  add_group(task, 1, block({20.5, 16.5}, 6, 8), block({-25.5, 16.5}, 6, 8));
+  expect_passed(task);
+}
+
+TEST(SrdModel, DenseBlocksPassEachOtherInAGate) {
+  std::vector<Cell> wall;
+  for (int row = 0; row < 40; ++row) {
+    if (row < 15 || row >= 25) wall.push_back({40, row});
+  }
+  const TaskFloor floor(80, 40, wall);
+  MotionTask task = task_on(floor, 80);
+  add_group(task, 0, block({-25.5, 16.5}, 6, 8), block({20.5, 16.5}, 6, 8));
+  add_group(task, 1, block({20.5, 16.5}, 6, 8), block({-25.5, 16.5}, 6, 8));
+  expect_passed(task);
+}
+
+TEST(SrdModel, OnSlowGroundTheGroupWaitsAndKeepsItsFormation) {
+  std::vector<std::uint8_t> grey(60, 0);
+  std::fill(grey.begin() + 25, grey.begin() + 35, 255);
+  const TaskFloor hill(60, 40, {}, {}, test::ground_of(grey));
+  MotionTask task = task_on(hill, 60);
+  add_group(task, 0, block({-20, 5}, 6, 5), block({15, 20}, 6, 5));
+  SrdOptions options;
+  options.settle = 0;
+  const SrdModel model = model_of(task, options);
+  double slow_mps = 0;
+  double most_m = 0;
+  const auto end = run(model, task, [&](const auto& now, const auto& next) {
+    const auto places = model.destinations(static_cast<double>(next.tick) * model.step_s());
+    for (std::size_t i = 0; i < task.people(); ++i) {
+      const double speed_mps = distance(now.position[i], next.position[i]) / model.step_s();
+      EXPECT_LE(speed_mps, 1.4 * hill.floor->speed_factor(now.position[i]) + kRounding_m);
+      if (hill.floor->speed_factor(now.position[i]) < 0.51) slow_mps = std::max(slow_mps, speed_mps);
+      if (next.tick > 20) most_m = std::max(most_m, distance(next.position[i], places[i]));
+    }
+  });
+  EXPECT_GT(slow_mps, 0.5);  // somebody was on it
+  EXPECT_LT(most_m, 0.1);
+  EXPECT_LT(mean_distance(end.position, model.destinations(60)), 0.01);
+}
+
 TEST(SrdModel, WithoutFormationEverybodyComesToHerPlaceAndNothingIsKeptOnTheWay) {
   const TaskFloor floor;
   const MotionTask task = crossing(floor, 6, 6, 60, 1.4);

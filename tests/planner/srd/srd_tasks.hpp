@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "planner/motion/crowd.hpp"
@@ -12,17 +14,30 @@ namespace footlight::planner::test {
 /// A floor with its own stage, that a task can point to.
 struct TaskFloor {
   explicit TaskFloor(int columns = 60, int rows = 40, const std::vector<Cell>& blocked = {},
-                     std::vector<MovingObstacle> moving = {}) {
+                     std::vector<MovingObstacle> moving = {}, std::optional<Terrain> ground = {})
+      : terrain(std::move(ground)) {
     stage.grid = *Grid::make(GridKind::square, columns, rows, 1.0);
     for (const Cell cell : blocked) stage.blocked.push_back(stage.grid.index(cell));
     std::sort(stage.blocked.begin(), stage.blocked.end());
     ways = std::make_unique<Ways>(stage, 0.25);
-    floor = std::make_unique<MotionFloor>(*ways, std::move(moving), TempoMap(60), Instant{});
+    floor =
+        std::make_unique<MotionFloor>(*ways, std::move(moving), TempoMap(60), Instant{}, terrain ? &*terrain : nullptr);
   }
   Stage stage;
+  std::optional<Terrain> terrain;
   std::unique_ptr<Ways> ways;
   std::unique_ptr<MotionFloor> floor;
 };
+
+/// Ground from a row of pixels, from stage right to stage left; white leaves half of everybody's speed.
+inline Terrain ground_of(std::vector<std::uint8_t> grey) {
+  Terrain out;
+  out.slowest = 0.5;
+  out.width = static_cast<int>(grey.size());
+  out.height = 1;
+  out.grey = std::move(grey);
+  return out;
+}
 
 inline std::vector<Point> block(Point corner, int columns, int rows, double spacing_m = 1) {
   std::vector<Point> out;
