@@ -174,7 +174,7 @@ class BusLoop final : private drivers::EventSink {
   bool repeat_latch() noexcept;
   bool send_heartbeat() noexcept;
   bool upload(bool urgent_only) noexcept;
-  bool verify() noexcept;
+  bool verify(bool not_missed) noexcept;
   bool repair() noexcept;
   bool preload_next() noexcept;
   bool ask_quarantined(bool hopeful_only) noexcept;

@@ -30,7 +30,8 @@ bool BusLoop::act() noexcept {
     return started_;
   }
   if (in_hurry() && preload_next()) return true;
-  return upload(true) || verify() || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
+  // After a death nodes mostly show what they should, and have the looks: a question tells sooner than an upload mends.
+  return verify(true) || upload(true) || verify(false) || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
          ask_quarantined(false) || send_content() || refresh() || upload(false);
 }
 
@@ -116,12 +117,12 @@ bool BusLoop::awaits_status() const noexcept {
          std::ranges::any_of(nodes_, [](const NodeState& node) { return node.verify && !node.quarantined; });
 }
 
-bool BusLoop::verify() noexcept {
+bool BusLoop::verify(bool not_missed) noexcept {
   if (can_.pushes_status || !fits(time_of(Operation::ask))) return false;
   NodeState* least = nullptr;
   for (NodeState& node : nodes_) {
-    if (node.verify && !node.quarantined && !rests(node) && (least == nullptr || node.misses < least->misses))
-      least = &node;
+    if (!node.verify || node.quarantined || rests(node) || (not_missed && node.misses > 0)) continue;
+    if (least == nullptr || node.misses < least->misses) least = &node;
   }
   return least != nullptr && send_ask(*least);
 }

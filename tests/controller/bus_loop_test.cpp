@@ -479,6 +479,10 @@ TEST(SequencedBus, WhoShowsTheRightStateAfterARestartIsNotTouched) {
     }
   }
   EXPECT_TRUE(bench.loop.settled());
+  const auto& log = bench.driver.log;
+  const auto first_upload = std::ranges::find(log, Kind::upload, &FakeDriver::Operation::kind);
+  EXPECT_EQ(std::ranges::count(log.begin(), first_upload, Kind::ask, &FakeDriver::Operation::kind), 3)
+      << "a question tells sooner than all looks are sent";
 }
 
 TEST(SequencedBus, SequencesGoFromOneTo240AndWrap) {
