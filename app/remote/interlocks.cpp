@@ -100,6 +100,11 @@ bool Interlocks::tell_gate(std::string_view name, bool closed, Instant now) {
   return false;
 }
 
+bool Interlocks::is_told(std::string_view name) const {
+  return std::ranges::any_of(
+      gates_, [&](const Gate& gate) { return gate.name == name && gate.has_input && gate.input.by_osc; });
+}
+
 Result<std::string> Interlocks::by_word(std::string_view name, bool closed) {
   std::string all;
   for (Gate& gate : gates_) {

@@ -39,6 +39,7 @@ class Interlocks {
   void lose_button(std::size_t index, const std::string& why);
   /// By OSC, under its name. @return whether there is such a one that is told by OSC
   bool tell_gate(std::string_view name, bool closed, Instant now);
+  [[nodiscard]] bool is_told(std::string_view gate) const;
 
   /// The operator answers for a gate, or no more. Errors say which gates there are.
   Result<std::string> by_word(std::string_view gate, bool closed);

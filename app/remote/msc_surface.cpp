@@ -8,7 +8,6 @@
 namespace footlight::app {
 namespace {
 
-constexpr Duration kWindow = milliseconds(20);
 constexpr Duration kTellLost = milliseconds(1000);
 constexpr Duration kAgain = milliseconds(1000);
 constexpr int kMostTaken = 1024;  // a look
@@ -34,21 +33,14 @@ int MscSurface::file() const { return input_ ? input_->poll_handle() : -1; }
 
 void MscSurface::look(const DeskView& view, RunDesk& desk) {
   if (!input_) return reopen(desk);
+  guard_.begin_look();
   for (int i = 0; i < kMostTaken; ++i) {
     const auto message = input_->take();
     if (!message) break;
     const MscHeard heard = hear_msc(message->view(), settings_);
     if (!heard.call && heard.why_not.empty()) continue;
-    const Instant now = clock_.now();
-    if (now - window_ >= kWindow) {
-      window_ = now;
-      taken_ = 0;
-    }
-    if (++taken_ > kMostMessages) {
-      ++lost_;
-      continue;
-    }
-    say(heard, view, desk);
+    const bool holds = heard.call && heard.call->kind == RemoteCall::Kind::hold;
+    if (holds ? guard_.take_hold(clock_.now()) : guard_.take({}, clock_.now())) say(heard, view, desk);
   }
   tell_lost(desk);
   if (!input_->closed()) return;
@@ -75,7 +67,7 @@ void MscSurface::reopen(RunDesk& desk) {
 }
 
 void MscSurface::tell_lost(RunDesk& desk) {
-  lost_ += input_->lost() - std::exchange(lost_in_input_, input_->lost());
+  lost_ += guard_.lost() + input_->lost() - std::exchange(lost_in_input_, input_->lost());
   if (lost_ == 0 || clock_.now() - lost_told_ < kTellLost) return;
   lost_told_ = clock_.now();
   desk.tell({RunEvent::Kind::note,

@@ -5,12 +5,14 @@
 #include <memory>
 
 #include "app/midi/midi_input.hpp"
+#include "app/remote/flood_guard.hpp"
 #include "app/remote/msc.hpp"
 #include "app/surfaces/run_desk.hpp"
 
 namespace footlight::app {
 
-/// The show led by MIDI Show Control. A port that is gone is asked for again every second; a flood costs messages.
+/// The show led by MIDI Show Control. A port that is gone is asked for again every second; a flood costs messages,
+/// but never a STOP or ALL_OFF.
 class MscSurface final : public Surface {
  public:
   /// Borrows the clock. Errors (ErrorKind::device): no such port.
@@ -20,9 +22,6 @@ class MscSurface final : public Surface {
   void look(const DeskView& view, RunDesk& desk) override;
   [[nodiscard]] int file() const override;
   [[nodiscard]] bool listens() const override { return listens_; }
-
-  /// Of show control in a window of 20 ms.
-  static constexpr int kMostMessages = 16;
 
  private:
   MscSurface(const config::MidiRemote& settings, std::unique_ptr<MidiInput> input, const Clock& clock, bool listens);
@@ -35,8 +34,7 @@ class MscSurface final : public Surface {
   const Clock& clock_;
   bool listens_;
   Speaker me_;
-  Instant window_{};
-  int taken_ = 0;
+  FloodGuard guard_;
   std::uint64_t lost_ = 0;
   std::uint64_t lost_in_input_ = 0;
   Instant lost_told_{};

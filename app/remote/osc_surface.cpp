@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -15,9 +17,11 @@
 namespace footlight::app {
 namespace {
 
-constexpr Duration kWindow = milliseconds(20);
 constexpr Duration kTellLost = milliseconds(1000);
-constexpr int kMostReads = 512;  // a look: what is beyond them waits or is dropped by the kernel
+// Of a look: what is beyond them waits in the kernel, as far as its buffer goes.
+constexpr int kMostReads = 2048;
+constexpr std::size_t kMostBytes = std::size_t{1} << 19U;
+constexpr int kKernelBuffer = 1 << 22;
 constexpr std::size_t kMostPending = 256;
 constexpr std::size_t kLargestDatagram = 8192;
 
@@ -27,6 +31,9 @@ struct SocketAddress {
   [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&bytes); }
   [[nodiscard]] sockaddr* get() { return reinterpret_cast<sockaddr*>(&bytes); }
 };
+
+/// Whose messages have not shown the token, for the guard.
+std::string stranger(const config::NetworkPlace& client) { return "stranger " + client.address; }
 
 SocketAddress address_of(const config::NetworkPlace& place) {
   SocketAddress out;
@@ -62,6 +69,23 @@ config::NetworkPlace place_of(const SocketAddress& address) {
   return {text.data(), ntohs(four->sin_port)};
 }
 
+/// Whether there is a HOLD, a button or a gate in it, as far as its bytes tell. What is said of anything else after a
+/// client's budget is spent need not be read.
+bool may_hold(std::span<const std::byte> datagram) {
+  const std::string_view bytes(reinterpret_cast<const char*>(datagram.data()), datagram.size());
+  constexpr std::array<std::string_view, 7> kWords{"/stop",        "/pause", "/panic", "/footlight/b",
+                                                   "/footlight/g", "hold",   "HOLD"};
+  return std::ranges::any_of(kWords, [&](std::string_view word) { return bytes.find(word) != std::string_view::npos; });
+}
+
+/// "hold", "HOLD": as `Orders` reads it.
+bool is_hold(const RemoteCall& call) {
+  if (call.kind == RemoteCall::Kind::hold) return true;
+  if (call.kind != RemoteCall::Kind::order || call.text.size() != 4) return false;
+  return std::ranges::equal(call.text, std::string_view("hold"), {},
+                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+}
+
 Result<FileDescriptor> listen_at(const config::NetworkPlace& place) {
   const SocketAddress address = address_of(place);
   FileDescriptor socket(::socket(address.bytes.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -69,6 +93,9 @@ Result<FileDescriptor> listen_at(const config::NetworkPlace& place) {
     return device_error(fmt::format("OSC: UDP port {} of {}: {} (a port that nobody uses, an address of this machine)",
                                     place.port, place.address, std::generic_category().message(errno)));
   }
+  // What overflows it before it is read is lost to everybody, HOLD or not. The second needs a privilege.
+  (void)::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &kKernelBuffer, sizeof kKernelBuffer);
+  (void)::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUFFORCE, &kKernelBuffer, sizeof kKernelBuffer);
   return socket;
 }
 
@@ -105,7 +132,7 @@ OscSurface::OscSurface(const config::OscRemote& settings, std::string token, Fil
 
 int OscSurface::file() const {
   // While somebody floods nobody is woken for it: the next look takes what there is.
-  return clock_.now() < floods_until_ ? -1 : socket_.get();
+  return guard_.floods(clock_.now()) ? -1 : socket_.get();
 }
 
 void OscSurface::look(const DeskView& view, RunDesk& desk) {
@@ -120,40 +147,32 @@ void OscSurface::look(const DeskView& view, RunDesk& desk) {
 
 void OscSurface::read(const DeskView& view, RunDesk& desk) {
   std::array<std::byte, kLargestDatagram> buffer{};
-  for (int reads = 0; reads < kMostReads; ++reads) {
+  std::size_t bytes = 0;
+  guard_.begin_look();
+  for (int reads = 0; reads < kMostReads && bytes < kMostBytes; ++reads) {
     SocketAddress from;
     const ssize_t size = ::recvfrom(socket_.get(), buffer.data(), buffer.size(), 0, from.get(), &from.size);
-    if (size < 0) return;  // nothing more; what the network reports of replies is nobody's concern
+    if (size < 0) break;  // nothing more; what the network reports of replies is nobody's concern
     const config::NetworkPlace client = place_of(from);
     if (!door_.knows(client.address)) continue;
-    const Instant now = clock_.now();
-    if (now - window_ >= kWindow) {
-      window_ = now;
-      taken_ = 0;
-    }
-    if (taken_ >= kMostMessages) {
-      ++lost_;
-      floods_until_ = now + kWindow;
-      continue;
-    }
+    bytes += static_cast<std::size_t>(size);
     take(std::span(buffer.data(), static_cast<std::size_t>(size)), client, view, desk);
   }
+  settle_inputs(desk);
 }
 
 void OscSurface::take(std::span<const std::byte> datagram, const config::NetworkPlace& client, const DeskView& view,
                       RunDesk& desk) {
+  const Instant now = clock_.now();
+  if (guard_.full(client.address, now) && guard_.full(stranger(client), now) && !may_hold(datagram)) {
+    return guard_.lose(now);
+  }
   auto messages = read_osc(datagram);
   if (!messages) {
-    ++taken_;
-    return reply(client, "", "error", messages.error().message);
+    if (guard_.take(stranger(client), now)) reply(client, "", "error", messages.error().message);
+    return;
   }
-  for (OscMessage& message : *messages) {
-    if (++taken_ > kMostMessages) {
-      ++lost_;
-      continue;
-    }
-    carry_out(std::move(message), client, view, desk);
-  }
+  for (OscMessage& message : *messages) carry_out(std::move(message), client, view, desk);
 }
 
 void OscSurface::carry_out(OscMessage message, const config::NetworkPlace& client, const DeskView& view,
@@ -161,25 +180,27 @@ void OscSurface::carry_out(OscMessage message, const config::NetworkPlace& clien
   const Instant now = clock_.now();
   const std::string address = message.address;
   if (address == "/connect") {
+    if (!guard_.take(stranger(client), now)) return;
     const OscAsked asked = asked_by(message);
     const bool right = asked.kind == OscAsked::Kind::connect && door_.connect(client, asked.call.text, now);
     return reply(client, address, right ? "ok" : "denied", right ? "" : "the token is another one");
   }
   if (!door_.lets_in(client, message, now)) {
+    if (!guard_.take(stranger(client), now)) return;
     return reply(client, address, "denied", "/connect with the token, or the token as the last argument");
   }
   const OscAsked asked = asked_by(message);
+  const bool holds = asked.kind == OscAsked::Kind::call && is_hold(asked.call);
+  const bool input = asked.kind == OscAsked::Kind::input;
+  if (holds ? !guard_.take_hold(now) : !input && !guard_.take(client.address, now)) return;
   switch (asked.kind) {
     case OscAsked::Kind::call:
       return say(asked.call, address, client, view, desk);
-    case OscAsked::Kind::input: {
-      const OscInput& input = asked.input;
-      const bool known = input.gate ? interlocks_.tell_gate(input.name, input.on, now)
-                                    : panel_.tell_button(input.name, input.on, now, desk);
-      if (known) return;  // it is said again and again: no replies
-      return reply(client, address, "error",
-                   std::string("no ") + (input.gate ? "gate" : "button") + " \"" + input.name + "\" is told by OSC");
-    }
+    case OscAsked::Kind::input:
+      if (hear(asked.input, client, desk) || !guard_.take(client.address, now)) return;
+      return reply(
+          client, address, "error",
+          std::string("no ") + (asked.input.gate ? "gate" : "button") + " \"" + asked.input.name + "\" is told by OSC");
     case OscAsked::Kind::state:
       return send({client.address, settings_.reply_port != 0 ? settings_.reply_port : client.port},
                   osc_bundle(state_of(view)));
@@ -188,6 +209,41 @@ void OscSurface::carry_out(OscMessage message, const config::NetworkPlace& clien
       return;
     case OscAsked::Kind::unknown:
       return reply(client, address, "error", asked.why);
+  }
+}
+
+bool OscSurface::hear(const OscInput& input, const config::NetworkPlace& client, RunDesk& desk) {
+  const Instant now = clock_.now();
+  if (!input.gate && !panel_.holds(input.name)) {
+    // Each press is an order, and counts as one. It is said again and again: no replies.
+    return !panel_.is_told(input.name)
+               ? false
+               : !guard_.take(client.address, now) || panel_.tell_button(input.name, input.on, now, desk);
+  }
+  const auto waiting = levels_.find({input.gate, input.name});
+  if (waiting != levels_.end()) {
+    // Closed is what a gate has to be said to be each time, pressed is what a button has to be said to be once.
+    waiting->second = input.gate ? waiting->second && input.on : waiting->second || input.on;
+    return true;
+  }
+  if (!guard_.full("input " + client.address, now)) {
+    (void)guard_.take("input " + client.address, now);
+    return input.gate ? interlocks_.tell_gate(input.name, input.on, now)
+                      : panel_.tell_button(input.name, input.on, now, desk);
+  }
+  if (input.gate && !interlocks_.is_told(input.name)) return false;
+  levels_[{input.gate, input.name}] = input.on;
+  return true;
+}
+
+void OscSurface::settle_inputs(RunDesk& desk) {
+  const Instant now = clock_.now();
+  for (const auto& [input, on] : std::exchange(levels_, {})) {
+    if (input.first) {
+      (void)interlocks_.tell_gate(input.second, on, now);
+    } else {
+      (void)panel_.tell_button(input.second, on, now, desk);
+    }
   }
 }
 
@@ -246,10 +302,10 @@ std::vector<OscMessage> OscSurface::state_of(const DeskView& view) const {
 }
 
 void OscSurface::tell_lost(RunDesk& desk) {
-  if (lost_ == 0 || clock_.now() - lost_told_ < kTellLost) return;
+  if (!guard_.any_lost() || clock_.now() - lost_told_ < kTellLost) return;
   lost_told_ = clock_.now();
-  desk.tell({RunEvent::Kind::note,
-             fmt::format("OSC: {} messages were lost: more than {} in 20 ms", std::exchange(lost_, 0), kMostMessages)});
+  desk.tell({RunEvent::Kind::note, fmt::format("OSC: {} messages were lost: more than {} of a client in 20 ms",
+                                               guard_.lost(), FloodGuard::kMost)});
 }
 
 }  // namespace footlight::app

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "app/remote/flood_guard.hpp"
 #include "app/remote/interlocks.hpp"
 #include "app/remote/osc_calls.hpp"
 #include "app/remote/osc_door.hpp"
@@ -20,8 +22,11 @@
 namespace footlight::app {
 
 /// The show led and told by OSC over UDP (docs/remote.md). Every call is answered at `/reply` and its address with
-/// "ok", "refused", "denied" or "error" and a text. A flood is read and dropped beyond some messages every 20 ms, and
-/// costs nothing but itself.
+/// "ok", "refused", "denied" or "error" and a text.
+///
+/// A flood costs whoever floods its messages beyond some every 20 ms, and nobody a HOLD: first it is asked who may,
+/// then what is meant. /stop, hold buttons and gates are in no budget; of what is said too often of such an input the
+/// level counts that is on the safe side. Messages without the token have a budget of their own.
 class OscSurface final : public Surface {
  public:
   /// Borrows all but the settings. @param listens whether a run goes on for what might still be said here
@@ -35,9 +40,6 @@ class OscSurface final : public Surface {
   void told(const RunEvent& event) override;
   [[nodiscard]] int file() const override;
   [[nodiscard]] bool listens() const override { return listens_; }
-
-  /// Messages in a window of 20 ms; the cue thread's ring takes four times as many.
-  static constexpr int kMostMessages = 16;
 
  private:
   struct Pending {
@@ -53,6 +55,9 @@ class OscSurface final : public Surface {
   void take(std::span<const std::byte> datagram, const config::NetworkPlace& client, const DeskView& view,
             RunDesk& desk);
   void carry_out(OscMessage message, const config::NetworkPlace& client, const DeskView& view, RunDesk& desk);
+  /// @return whether one of that name is told by OSC
+  bool hear(const OscInput& input, const config::NetworkPlace& client, RunDesk& desk);
+  void settle_inputs(RunDesk& desk);
   void say(const RemoteCall& call, const std::string& address, const config::NetworkPlace& client, const DeskView& view,
            RunDesk& desk);
   void reply(const config::NetworkPlace& client, const std::string& address, const std::string& status,
@@ -71,12 +76,10 @@ class OscSurface final : public Surface {
   const Clock& clock_;
   bool listens_;
   std::deque<Pending> pending_;  ///< calls that are not answered yet
-  Instant window_{};             ///< began
-  int taken_ = 0;                ///< in this window
-  std::uint64_t lost_ = 0;       ///< messages, since that was told
+  FloodGuard guard_;
+  std::map<std::pair<bool, std::string>, bool> levels_;  ///< of gates (true) and hold buttons that were told too often
   Instant lost_told_{};
   Instant state_told_{};
-  Instant floods_until_{};
 };
 
 }  // namespace footlight::app

@@ -52,6 +52,16 @@ void Panel::press(std::size_t button, controller::GoSource source, RunDesk& desk
   }
 }
 
+bool Panel::is_told(std::string_view name) const {
+  const auto it = std::ranges::find(buttons_, name, &config::RemoteButton::name);
+  return it != buttons_.end() && !it->input.line;
+}
+
+bool Panel::holds(std::string_view name) const {
+  const auto it = std::ranges::find(buttons_, name, &config::RemoteButton::name);
+  return is_told(name) && (it->does == Does::hold || it->does == Does::emergency_hold);
+}
+
 bool Panel::tell_button(std::string_view name, bool pressed, Instant now, RunDesk& desk) {
   const auto it = std::ranges::find(buttons_, name, &config::RemoteButton::name);
   if (it == buttons_.end() || it->input.line) return false;

@@ -20,6 +20,9 @@ class Panel {
   void press(std::size_t button, controller::GoSource source, RunDesk& desk);
   /// How a button is, by OSC, under its name. @return whether one is told so
   bool tell_button(std::string_view name, bool pressed, Instant now, RunDesk& desk);
+  /// Whether a button of that name is told by OSC; whether it holds while it is pressed.
+  [[nodiscard]] bool is_told(std::string_view name) const;
+  [[nodiscard]] bool holds(std::string_view name) const;
   /// The order "standby", "standby off".
   Result<std::string> standby(const std::vector<std::string>& words);
 

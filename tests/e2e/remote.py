@@ -145,6 +145,55 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             self.assertTrue(any("has pressed GO for more than 5 s" in line.get("alarm", "") for line in desk.lines) or "too soon after the last GO" in desk.answers() or "the cue runs" in desk.answers())
             self.assert_floor(report)
 
+        def test_a_flood_swallows_neither_a_hold_nor_a_gates_sign_of_life(self):
+            show = SHOW.replace("announce:", "gates: [trap closed]\nannounce:").replace("name: Ring,", "name: Ring, gates: [trap closed],")
+            desk, surface = self.led_by_osc("gates: [{gate: trap closed, osc: true, lost_after: 1 s}]\nbuttons: [{name: spotter, does: hold, osc: true}]\n", show)
+            over, pressed, is_loud = threading.Event(), [0], [False]
+
+            def flood():
+                loud = [osc("/go"), osc("/footlight/order", "tempo 50"), osc("/cue/9/start"), b"\xff" * 100, osc("/resume")]
+                said_at = 0
+                with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+                    while not over.is_set():
+                        for message in loud if is_loud[0] else ():
+                            out.sendto(message, ("127.0.0.1", surface.port))
+                        if time.monotonic() - said_at > 0.2:
+                            said_at = time.monotonic()
+                            out.sendto(osc("/footlight/gate", "trap closed", 1), ("127.0.0.1", surface.port))
+                            out.sendto(osc("/footlight/button", "spotter", pressed[0]), ("127.0.0.1", surface.port))
+                        time.sleep(0.0005)
+
+            flooding = threading.Thread(target=flood)
+            flooding.start()
+            try:
+                desk.until("the gate", gates=[{"name": "trap closed", "state": "closed"}])
+                desk.say("go")
+                desk.until("the end of cue 1", phase="stands", standby="2")
+                time.sleep(0.3)
+                desk.say("go")
+                desk.until("cue 2", phase="runs", cue="2")
+                is_loud[0] = True
+                time.sleep(0.3)
+                pressed[0] = 1
+                desk.until("the spotter's hold", phase="stands", cue="2")
+                time.sleep(1.5)
+                self.assertEqual((desk.state["phase"], desk.state["cue"]), ("stands", "2"), "the flood's GO and resume are refused")
+                self.assertTrue(any(line.get("alarm", "").startswith("HOLD by button spotter") for line in desk.lines))
+                pressed[0], is_loud[0] = 0, False
+                wait_for(lambda: not desk.state["against"], "the spotter to let go")
+                time.sleep(0.3)
+                desk.say("go")
+                desk.until("the end", phase="finished")
+            finally:
+                over.set()
+                flooding.join()
+            self.assertFalse([line["alarm"] for line in desk.lines if "trap closed: lost" in line.get("alarm", "")])
+            self.assertTrue(any("messages were lost" in line.get("note", "") for line in desk.lines))
+            desk.say("quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assert_floor(report)
+
         def test_a_gate_that_is_lost_holds_the_cue_and_go_is_refused(self):
             show = SHOW.replace("announce:", "gates: [trap closed]\nannounce:").replace("name: Ring,", "name: Ring, gates: [trap closed],")
             desk, surface = self.led_by_osc("gates: [{gate: trap closed, osc: true, lost_after: 0.5 s}]\nbuttons: [{name: spotter, does: hold, osc: true}]\n", show)

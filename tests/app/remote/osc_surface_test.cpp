@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/remote/osc_surface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -184,12 +185,85 @@ TEST_F(OscSurfaceTest, AFloodLosesMessagesAndIsToldOnce) {
     commands += look().size();
     EXPECT_EQ(surface_->file(), -1) << "nobody is woken for a flood";
   }
-  EXPECT_EQ(commands, 10U * OscSurface::kMostMessages);
+  EXPECT_EQ(commands, 10U * FloodGuard::kMost);
   (void)look(1);
-  EXPECT_THAT(ears_.take(), ElementsAre("note: OSC: 840 messages were lost: more than 16 in 20 ms"));
+  EXPECT_THAT(ears_.take(), ElementsAre("note: OSC: 840 messages were lost: more than 16 of a client in 20 ms"));
   send({"/go"});
   EXPECT_EQ(look().size(), 1U) << "afterwards everything is heard again";
   EXPECT_GE(surface_->file(), 0);
+}
+
+TEST_F(OscSurfaceTest, AFloodSwallowsNoHoldOfTheSameClient) {
+  open();
+  const auto kinds = [&] {
+    std::vector<controller::Command::Kind> said;
+    for (const controller::Command& command : look()) said.push_back(command.kind);
+    return said;
+  };
+  using Kind = controller::Command::Kind;
+  for (const OscMessage& hold : {OscMessage{"/stop"}, OscMessage{"/panic"}, OscMessage{"/footlight/order", {"HOLD"}}}) {
+    for (int i = 0; i < 100; ++i) send({"/go"});
+    send(hold);
+    for (int i = 0; i < 100; ++i) send({"/go"});
+    const auto said = kinds();
+    EXPECT_EQ(std::ranges::count(said, Kind::hold), 1) << hold.address;
+    EXPECT_EQ(said.back(), Kind::hold) << "the GOs before and after it were lost";
+  }
+  // A flood of holds says one thing.
+  for (int i = 0; i < 100; ++i) send({"/stop"});
+  EXPECT_THAT(kinds(), ElementsAre(Kind::hold));
+  send({"/stop"});
+  send({"/go"});
+  send({"/stop"});
+  EXPECT_THAT(kinds(), ElementsAre(Kind::hold, Kind::go, Kind::hold)) << "the last word counts";
+}
+
+TEST_F(OscSurfaceTest, AFloodSwallowsNeitherASpottersHoldNorAGatesSignOfLife) {
+  open();
+  send({"/footlight/gate", {"trap", std::int32_t{1}}});
+  (void)look();
+  for (int round = 0; round < 200; ++round) {
+    for (int i = 0; i < 100; ++i) send({"/go"});
+    send({"/footlight/gate", {"trap", std::int32_t{1}}});
+    if (round == 100) send({"/footlight/button", {"left", std::int32_t{1}}});
+    (void)look();
+    interlocks_->step(clock_.now());
+    EXPECT_EQ(interlocks_->gates()[0].state, GateView::State::closed) << round;
+    EXPECT_EQ((interlocks_->bars() & controller::kHoldPressed) != 0, round >= 100) << round;
+  }
+}
+
+TEST_F(OscSurfaceTest, OfInputsThatAreToldTooOftenTheSafeLevelCounts) {
+  open();
+  send({"/footlight/gate", {"trap", std::int32_t{1}}});
+  (void)look();
+  for (int i = 0; i < 200; ++i) {
+    send({"/footlight/gate", {"trap", std::int32_t{i == 150 ? 0 : 1}}});
+    send({"/footlight/button", {"left", std::int32_t{i == 150 ? 1 : 0}}});
+    send({"/footlight/button", {"nobody", std::int32_t{1}}});
+  }
+  (void)look();
+  EXPECT_EQ(interlocks_->gates()[0].state, GateView::State::open);
+  EXPECT_NE(interlocks_->bars() & controller::kHoldPressed, 0U);
+  send({"/footlight/gate", {"trap", std::int32_t{1}}});
+  send({"/footlight/button", {"left", std::int32_t{0}}});
+  (void)look();
+  EXPECT_EQ(interlocks_->gates()[0].state, GateView::State::closed) << "the next time it is said";
+  EXPECT_EQ(interlocks_->bars() & controller::kHoldPressed, 0U);
+}
+
+TEST_F(OscSurfaceTest, WhoHasNoTokenUsesUpNobodysBudget) {
+  const test::TemporaryFolder folder;
+  folder.write("token", "0123456789abcdefghijkl");
+  std::filesystem::permissions(folder.path() / "token", std::filesystem::perms::owner_read);
+  settings_.token_file = folder / "token";
+  open();
+  const Peer stranger;
+  for (int i = 0; i < 100; ++i) stranger.send(settings_.listen.port, osc_bytes({"/go"}));
+  for (int i = 0; i < 100; ++i) stranger.send(settings_.listen.port, osc_bytes({"/stop"}));
+  send({"/go", {"0123456789abcdefghijkl"}});
+  EXPECT_EQ(look().size(), 1U);
+  EXPECT_EQ(stranger.take().size(), static_cast<std::size_t>(FloodGuard::kMost)) << "denied";
 }
 
 TEST_F(OscSurfaceTest, GarbageIsAnsweredAndCountsInTheFlood) {
@@ -197,7 +271,7 @@ TEST_F(OscSurfaceTest, GarbageIsAnsweredAndCountsInTheFlood) {
   for (int i = 0; i < 40; ++i) peer_.send(settings_.listen.port, std::vector<std::byte>(7, std::byte{0xFF}));
   EXPECT_THAT(look(), IsEmpty());
   const auto replies = peer_.take();
-  EXPECT_EQ(replies.size(), static_cast<std::size_t>(OscSurface::kMostMessages));
+  EXPECT_EQ(replies.size(), static_cast<std::size_t>(FloodGuard::kMost));
   EXPECT_EQ(replies[0], (OscMessage{"/reply", {"error", "no OSC message"}}));
 }
 
