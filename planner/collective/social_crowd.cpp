@@ -18,6 +18,9 @@ namespace {
 /// What is wanted in less time than this would be a jerk, reaction times.
 constexpr double kLeastTime = 1;
 
+/// Who slides along something stays so far off it.
+constexpr double kSlideOff_m = 0.005;
+
 /// Calls work(first, last) for chunks of people on all cores. What a chunk does must not depend on another.
 template <class Work>
 void for_chunks(std::size_t people, Work work) {
@@ -252,8 +255,13 @@ Point SocialCrowd::moved(std::size_t person, Point from, Point by, bool near_blo
   if (!near || near->distance_m <= 0) return here;
   const Point normal = unit(here - near->at);
   const Point left = to - here;
-  const Point along = left - dot(left, normal) * normal;
-  return here + floor.free_share(here, here + along) * along;
+  // A little off first: a sweep along something that is touched ends where it begins. No longer than what is left.
+  const double left_m = length(left);
+  const double off_m = std::min(kSlideOff_m, left_m / 2);
+  const Point beside = here + floor.free_share(here, here + off_m * normal) * off_m * normal;
+  const double shorter = left_m > 0 ? std::sqrt(1 - off_m / left_m * (off_m / left_m)) : 0;
+  const Point along = shorter * (left - dot(left, normal) * normal);
+  return beside + floor.free_share(beside, beside + along) * along;
 }
 
 void SocialCrowd::step(const State& now, State& next) const {

@@ -347,6 +347,30 @@ TEST(Collective, SlowPeopleAreNotOverrunAndEverybodyArrives) {
   }
 }
 
+TEST(SocialCrowd, WhoIsPressedAgainstAWallSlidesAlongIt) {
+  const Grid grid = floor_of(21, 16);
+  const FloorTask floor = task_on(21, 16, wall(10, 10), {{-6, 12}}, {{6, 5}}, 30);
+  CollectiveOptions options;
+  options.fluctuation_mps2 = 0;
+  options.repulsion_mps2 = 0;  // as where her sub-group draws her on as much as the wall pushes
+  const collective::WalkField field(*floor.ways);
+  const auto ways = TimedWays::make(floor.task, floor.task.to, &field, 28);
+  ASSERT_TRUE(ways) << ways.error();
+  const collective::SocialCrowd crowd(floor.task, options, *ways, {});
+  auto now = crowd.begin();
+  now.position[0] = {-0.5 - floor.ways->keep_m(), 9};  // touches it, and her first corner is around its end at y = 10
+  for (int k = 0; k < 250; ++k) {
+    auto next = now;
+    ++next.tick;
+    crowd.step(now, next);
+    ASSERT_LE(distance(next.position[0], now.position[0]), 1.4 * 0.1 + 1e-9);
+    ASSERT_GE(floor.floor->nearest(next.position[0], 5).value_or(MotionFloor::Nearest{{}, 5}).distance_m,
+              floor.ways->keep_m() - 1e-6);
+    now = next;
+  }
+  EXPECT_GT(now.position[0].x, 1) << "she is behind it";
+}
+
 TEST(SocialCrowd, FeedbackBringsHeadingsTogether) {
   // Left of the middle people want to the left, right of it to the right, and one wants upstage: the places tell the
   // direction, and those around her draw her along.
