@@ -1,4 +1,5 @@
-# cmake -DOUTPUT=x.cpp -DROOT=folder -DFILES=a|b -P EmbedFiles.cmake: the files as C++, for app/console/embedded_files.hpp.
+# cmake -DOUTPUT=x.cpp -DFUNCTION=console_files -DROOT=folder -DFILES=a|b -P EmbedFiles.cmake: the files as C++, for
+# app/console/embedded_files.hpp.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(arrays "")
 set(table "")
@@ -26,7 +27,8 @@ std::string_view text(const unsigned char* bytes, std::size_t size) { return {re
 
 }  // namespace
 
-std::span<const EmbeddedFile> console_files() {
+std::span<const EmbeddedFile> ${FUNCTION}();
+std::span<const EmbeddedFile> ${FUNCTION}() {
   static const std::array<EmbeddedFile, ${number}> kFiles{{
 ${table}  }};
   return kFiles;

@@ -73,7 +73,13 @@ Result<ClientMessage> hello_from(const Json& value) {
   }
   auto token = text_in(value, "token");
   if (!token && value.contains("token")) return input_error("hello: the token is text");
-  return ClientMessage{Hello{*std::move(name), token.value_or("")}};
+  Hello hello{*std::move(name), token.value_or("")};
+  if (value.contains("role")) {
+    const auto role = paired_role_from(text_in(value, "role").value_or(""));
+    if (!role) return input_error("hello: the role is \"view\" or \"operate\"");
+    hello.most = *role;
+  }
+  return ClientMessage{std::move(hello)};
 }
 
 Result<ClientMessage> order_from(const Json& object, const Json& value) {

@@ -16,6 +16,7 @@ namespace footlight::app {
 struct Hello {
   std::string name;  ///< 1 to 40 characters, none of them a control character
   std::string token;
+  Role most = Role::admin;  ///< she asks for no more than that
 };
 struct OrderSaid {
   std::string line;  ///< at most 256 bytes, no control characters

@@ -43,7 +43,7 @@ std::string authority_of(const std::string& address, std::uint16_t port) {
 
 }  // namespace
 
-Result<Console::Place> Console::place_from(const std::string& place) {
+Result<Console::Place> Console::place_from(const std::string& place, const std::string& what) {
   Place out;
   const std::size_t colon = place.rfind(':');
   std::string port = place;
@@ -57,10 +57,10 @@ Result<Console::Place> Console::place_from(const std::string& place) {
   }
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), out.port);
   if (error != std::errc() || end != port.data() + port.size() || !numeric(out.address)) {
-    return input_error(fmt::format(
-        "\"{}\" is no place for the console: a port, as 8440, or a numeric address of this machine and a port, as "
-        "192.168.1.5:8440 or [::1]:8440",
-        place));
+    return input_error(
+        fmt::format("\"{}\" is no place for {}: a port, as 8440, or a numeric address of this machine and a port, as "
+                    "192.168.1.5:8440 or [::1]:8440",
+                    place, what));
   }
   return out;
 }

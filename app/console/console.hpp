@@ -22,7 +22,8 @@ class Console final : public Surface {
     Role most = Role::admin;            ///< that anybody may be
   };
   /// @param place "8440", "127.0.0.1:8440", "[::]:8440": an address and a port. Errors (ErrorKind::input)
-  [[nodiscard]] static Result<Place> place_from(const std::string& place);
+  /// @param what for the message
+  [[nodiscard]] static Result<Place> place_from(const std::string& place, const std::string& what = "the console");
 
   /// Listens from here on. Borrows show, plan, rig and desk.
   /// @param folder for the token and the audit log

@@ -7,12 +7,13 @@
 
 namespace footlight::app {
 
-const EmbeddedFile* console_file(std::string_view path) {
+const EmbeddedFile* file_in(std::span<const EmbeddedFile> files, std::string_view path) {
   if (path == "/") path = "/index.html";
-  const auto files = console_files();
   const auto found = std::ranges::find(files, path, &EmbeddedFile::path);
   return found == files.end() ? nullptr : &*found;
 }
+
+const EmbeddedFile* console_file(std::string_view path) { return file_in(console_files(), path); }
 
 std::string_view content_type_of(std::string_view path) {
   using Type = std::pair<std::string_view, std::string_view>;

@@ -17,6 +17,7 @@ struct EmbeddedFile {
 [[nodiscard]] std::span<const EmbeddedFile> console_files();
 
 /// By its path; "/" is "/index.html". Null: there is none.
+[[nodiscard]] const EmbeddedFile* file_in(std::span<const EmbeddedFile> files, std::string_view path);
 [[nodiscard]] const EmbeddedFile* console_file(std::string_view path);
 /// "text/html; charset=utf-8"
 [[nodiscard]] std::string_view content_type_of(std::string_view path);

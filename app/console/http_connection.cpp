@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/console/client_message.hpp"
 #include "app/console/embedded_files.hpp"
 #include "app/console/web_socket.hpp"
 
@@ -41,9 +40,9 @@ void add_headers(Fields& fields, bool document) {
 
 }  // namespace
 
-HttpConnection::HttpConnection(ServerWorks& works, ServerWorks::Tcp::socket socket,
-                               std::shared_ptr<ServerWorks::Admission> admission)
-    : works_(works), admission_(std::move(admission)), stream_(std::move(socket)) {
+HttpConnection::HttpConnection(HttpServer& server, HttpServer::Tcp::socket socket,
+                               std::shared_ptr<HttpServer::Admission> admission)
+    : server_(server), admission_(std::move(admission)), stream_(std::move(socket)) {
   boost::system::error_code error;
   const auto end = stream_.socket().local_endpoint(error);
   if (error) return;  // gone already
@@ -55,7 +54,7 @@ void HttpConnection::read() {
   parser_.emplace();
   parser_->header_limit(kHeaders);
   parser_->body_limit(kBody);
-  stream_.expires_after(works_.settings().headers_within);  // for all of them, however they drip in
+  stream_.expires_after(server_.limits().headers_within);  // for all of them, however they drip in
   http::async_read_header(stream_, buffer_, *parser_,
                           [self = shared_from_this()](Error error, std::size_t) { self->on_headers(error); });
 }
@@ -92,10 +91,10 @@ void HttpConnection::on_headers(Error error) {
     return refuse(400, "this is not HTTP/1.1: " + error.message());
   }
   if (error) return;  // gone, or too slow
-  const Verdict verdict = judge(asked(), works_.settings().rules, works_.pairing());
+  const Verdict verdict = server_.judge(asked());
   if (verdict.status >= 400) return refuse(verdict.status, verdict.why);
   if (verdict.route == Route::pair) {
-    stream_.expires_after(works_.settings().body_within);
+    stream_.expires_after(server_.limits().body_within);
     return http::async_read(stream_, buffer_, *parser_,
                             [self = shared_from_this()](Error failed, std::size_t) { self->on_body(failed); });
   }
@@ -108,45 +107,32 @@ void HttpConnection::answer(const Verdict& verdict) {
   switch (verdict.route) {
     case Route::page:
       return answer_page();
-    case Route::show:
-      return answer_document(works_.documents.show, kJson);
-    case Route::plan:
-      return answer_document(works_.documents.plan, kBytes);
-    case Route::way:
-      return answer_document(works_.documents.way, kBytes, 404);
-    case Route::looks:
-      stream_.expires_never();
-      return works_.want_looks(verdict.number, shared_from_this());
     case Route::socket:
       return become_socket();
-    case Route::pair:
-      return;  // has a body
+    default:
+      return server_.answer(shared_from_this(), verdict);
   }
 }
 
 void HttpConnection::on_body(Error error) {
   if (error == http::error::body_limit) return refuse(413, "at most 64 KiB of body");
   if (error) return;
-  const auto code = code_from(parser_->get().body());
-  if (!code) return refuse(400, code.error().message);
-  const auto paired = works_.room().pair(admission_->caller().from, *code);
-  if (!paired) return refuse(403, "the code is not good, or no longer: ask for another one");
-  const nlohmann::ordered_json json{{"token", paired->token}, {"role", to_text(paired->role)}};
-  const auto body = std::make_shared<const std::string>(json.dump());
-  respond(200, kJson, *body, body);
+  server_.take_body(*this, parser_->get().body());
 }
 
 void HttpConnection::answer_page() {
-  const EmbeddedFile* file = console_file(view(parser_->get().target()));
+  const EmbeddedFile* file = server_.file(view(parser_->get().target()));
   if (file == nullptr) return refuse(404, "there is nothing here by that name");
   const std::string etag = fmt::format("\"{}\"", file->sha256);
   const bool known = view(parser_->get()[http::field::if_none_match]) == etag;
   respond(known ? 304 : 200, content_type_of(file->path), known ? std::string_view() : file->bytes, nullptr, etag);
 }
 
-void HttpConnection::answer_document(const Letter& document, std::string_view type, int missing) {
+void HttpConnection::answer_document(const Letter& document, std::string_view type, int missing,
+                                     const std::string& etag) {
   if (!document) return refuse(missing, missing == 404 ? "there is none now" : "the run has only begun: ask again");
-  respond(200, type, *document, document);
+  const bool known = !etag.empty() && view(parser_->get()[http::field::if_none_match]) == etag;
+  respond(known ? 304 : 200, type, known ? std::string_view() : *document, document, etag);
 }
 
 void HttpConnection::take_looks(const Letter& looks) {
@@ -161,7 +147,7 @@ void HttpConnection::refuse(int status, const std::string& why) {
     what = fmt::format("{} {}", view(parser_->get().method_string()), target.substr(0, 200));
   }
   if (status != 404 && status != 503)
-    works_.refused(admission_->caller().from, what, fmt::format("{} {}", status, why));
+    server_.refused(admission_->caller().from, what, fmt::format("{} {}", status, why));
   last_ = true;
   const nlohmann::ordered_json json{{"error", why}};
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
@@ -193,7 +179,7 @@ void HttpConnection::on_written(Error error) {
   owner_.reset();
   if (!last_) return read();
   // Whoever still sends would else never read why she was refused.
-  stream_.socket().shutdown(ServerWorks::Tcp::socket::shutdown_send, error);
+  stream_.socket().shutdown(HttpServer::Tcp::socket::shutdown_send, error);
   stream_.expires_after(kToDrain);
   drain();
 }
@@ -207,7 +193,7 @@ void HttpConnection::drain() {
 
 void HttpConnection::become_socket() {
   stream_.expires_never();
-  auto socket = std::make_shared<WebSocket>(works_, std::move(stream_), std::move(admission_));
+  auto socket = std::make_shared<WebSocket>(server_, std::move(stream_), std::move(admission_));
   socket->accept(parser_->release());
 }
 

@@ -10,18 +10,25 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 
-#include "app/console/server_works.hpp"
+#include "app/console/http_server.hpp"
 
 namespace footlight::app {
 
 /// One connection that speaks HTTP, until it ends or becomes a WebSocket.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(ServerWorks& works, ServerWorks::Tcp::socket socket,
-                 std::shared_ptr<ServerWorks::Admission> admission);
+  HttpConnection(HttpServer& server, HttpServer::Tcp::socket socket, std::shared_ptr<HttpServer::Admission> admission);
   void read();
-  /// The answer to a request for looks.
+  [[nodiscard]] const Caller& caller() const { return admission_->caller(); }
+
+  // Answers; one for each request.
+  /// @param missing what to say where there is none  @param etag empty: it is never kept, else whoever has it already
+  /// is told so
+  void answer_document(const Letter& document, std::string_view type, int missing = 503, const std::string& etag = {});
   void take_looks(const Letter& looks);
+  void refuse(int status, const std::string& why);
+  /// It is answered later: nothing runs out until then.
+  void wait_for_answer() { stream_.expires_never(); }
 
  private:
   using Error = boost::system::error_code;
@@ -37,16 +44,13 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   [[nodiscard]] AskedFor asked() const;
   void answer(const Verdict& verdict);
   void answer_page();
-  /// @param missing what to say where there is none
-  void answer_document(const Letter& document, std::string_view type, int missing = 503);
-  void refuse(int status, const std::string& why);
   void respond(int status, std::string_view type, std::string_view body, Letter owner, std::string_view etag = {});
   void on_written(Error error);
   void drain();
   void become_socket();
 
-  ServerWorks& works_;
-  std::shared_ptr<ServerWorks::Admission> admission_;
+  HttpServer& server_;
+  std::shared_ptr<HttpServer::Admission> admission_;
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_{kHeaders + 1024};
   std::optional<Parser> parser_;

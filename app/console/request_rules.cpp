@@ -87,9 +87,8 @@ bool knows_origin(const AskedFor& asked, const ConsoleRules& rules) {
 
 std::optional<Verdict> wrong_names(const AskedFor& asked, const ConsoleRules& rules, Route route) {
   if (asked.hosts != 1 || !knows_host(asked, rules, asked.host)) {
-    return refused(421,
-                   "this console is not known by that Host; ask for it by its own address, or name it with "
-                   "--console-host");
+    return refused(421, "this console is not known by that Host; ask for it by its own address, or name it with " +
+                            rules.host_option);
   }
   const bool needs_origin = asked.method == Method::post || route == Route::socket;
   // An Origin that is there has to be ours wherever it stands.

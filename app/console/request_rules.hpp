@@ -52,8 +52,9 @@ struct ConsoleRules {
   AllowedHosts hosts;
   std::vector<std::string> local_names{};  ///< that mean the address itself, with its port: "localhost"
   bool needs_token = false;
-  std::string token;        ///< the admin's
-  Role most = Role::admin;  ///< that anybody may be
+  std::string token;                           ///< the admin's
+  Role most = Role::admin;                     ///< that anybody may be
+  std::string host_option = "--console-host";  ///< adds to `hosts`; for messages
 };
 
 /// The role of a token: the admin's own, or one that a code was good for; without a token the admin where none is

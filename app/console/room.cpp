@@ -115,7 +115,7 @@ void Room::hello(PersonId id, Person& person, const Hello& hello) {
     note(person, "hello", "refused: token");
     return mailer_.close(id, kToken, "the token is not good");
   }
-  person.role = *role;
+  person.role = std::min(*role, hello.most);
   person.welcome = true;
   note(person, "hello", "welcome");
   mailer_.send(id, letter_of({{"welcome",
@@ -278,7 +278,7 @@ void Room::health(std::string json) {
 void Room::take_plan(std::uint32_t epoch, std::string plan) {
   about_.epoch = epoch;
   about_.plan = std::move(plan);
-  to_all(letter_of({{"epoch", epoch}}));
+  to_all(letter_of({{"epoch", epoch}, {"plan", about_.plan}}));
 }
 
 void Room::to_all(const Letter& letter) {

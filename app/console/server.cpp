@@ -3,105 +3,78 @@
 
 #include <utility>
 
-#include <boost/asio/post.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "app/console/client_message.hpp"
 #include "app/console/http_connection.hpp"
 #include "app/console/server_works.hpp"
 #include "app/console/web_socket.hpp"
-#include "app/live/waiting.hpp"
 
 namespace footlight::app {
 namespace {
 
-namespace asio = boost::asio;
 using Error = boost::system::error_code;
 
 constexpr auto kTick = std::chrono::milliseconds(40);
 constexpr std::uint64_t kTicksOfRoom = 6;
-constexpr auto kPause = std::chrono::milliseconds(100);     // when the system has no more files to give
-constexpr auto kFarewell = std::chrono::milliseconds(300);  // for those who are connected when the run ends
+constexpr std::string_view kJson = "application/json";
+constexpr std::string_view kBytes = "application/octet-stream";
+
+HttpServer::Limits limits_of(const ConsoleServer::Settings& settings) {
+  HttpServer::Limits limits;
+  limits.connections = ConsoleServer::kMostConnections;
+  limits.of_one_address = ConsoleServer::kMostOfOneAddress;
+  limits.headers_within = settings.headers_within;
+  limits.body_within = settings.body_within;
+  limits.silent_for = settings.silent_for;
+  return limits;
+}
 
 }  // namespace
 
-ServerWorks::Admission::Admission(ServerWorks& works, Caller caller) : works_(works), caller_(std::move(caller)) {
-  ++works_.connected_;
-  ++works_.connections_[caller_.from];
-}
-
-ServerWorks::Admission::~Admission() {
-  --works_.connected_;
-  const auto found = works_.connections_.find(caller_.from);
-  if (--found->second == 0) works_.connections_.erase(found);
-}
-
 ServerWorks::ServerWorks(ConsoleServer::Settings settings, OrderBox& orders, AuditLog* audit, const Clock& clock)
-    : settings_(std::move(settings)),
+    : HttpServer(limits_of(settings)),
+      settings_(std::move(settings)),
       orders_(orders),
       room_(*this, orders, audit, pairing_, settings_.rules, clock, settings_.about),
       clock_(clock) {}
 
-ServerWorks::~ServerWorks() {
-  if (!thread_.joinable()) return;
-  asio::post(context_, [this] { end(); });
-  thread_.join();
-}
+ServerWorks::~ServerWorks() { stop(); }
 
-Status<> ServerWorks::listen() {
-  const auto wrong = [&](const std::string& why) {
-    return input_error(fmt::format("console {}:{}: {}", settings_.address, settings_.port, why));
-  };
-  Error error;
-  const auto address = asio::ip::make_address(settings_.address, error);
-  if (error) return wrong("no numeric address");
-  const Tcp::endpoint end(address, settings_.port);
-  acceptor_.open(end.protocol(), error);
-  if (!error) acceptor_.set_option(Tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor_.bind(end, error);
-  if (!error) acceptor_.listen(64, error);
-  if (error) return wrong(error.message());
-  port_ = acceptor_.local_endpoint().port();
-  accept();
-  tick();
-  thread_ = std::thread([this] { run(); });
-  return Done{};
-}
+Status<> ServerWorks::listen() { return HttpServer::listen("console", settings_.address, settings_.port); }
 
-void ServerWorks::run() {
-  yield_to_the_show();
-  context_.run();
-}
+Verdict ServerWorks::judge(const AskedFor& asked) const { return app::judge(asked, settings_.rules, pairing_); }
 
-void ServerWorks::accept() {
-  acceptor_.async_accept([this](Error error, Tcp::socket socket) {
-    if (ends_) return;
-    if (!error) {
-      take(std::move(socket));
-      return accept();
-    }
-    pause_.expires_after(kPause);
-    pause_.async_wait([this](Error stopped) {
-      if (!stopped && !ends_) accept();
-    });
-  });
-}
-
-void ServerWorks::take(Tcp::socket socket) {
-  Error error;
-  const auto end = socket.remote_endpoint(error);
-  if (error) return;
-  const std::string from = end.address().to_string();
-  const auto there = connections_.find(from);
-  const std::size_t of_it = there == connections_.end() ? 0 : there->second;
-  if (connected_ >= ConsoleServer::kMostConnections ||
-      (!end.address().is_loopback() && of_it >= ConsoleServer::kMostOfOneAddress)) {
-    return refused(from, "connection", "closed: there are too many");
+void ServerWorks::answer(const std::shared_ptr<HttpConnection>& connection, const Verdict& verdict) {
+  switch (verdict.route) {
+    case Route::show:
+      return connection->answer_document(documents.show, kJson);
+    case Route::plan:
+      return connection->answer_document(documents.plan, kBytes);
+    case Route::way:
+      return connection->answer_document(documents.way, kBytes, 404);
+    case Route::looks:
+      connection->wait_for_answer();
+      return want_looks(verdict.number, connection);
+    case Route::page:
+    case Route::socket:
+    case Route::pair:
+      return;  // the connection's own
   }
-  socket.set_option(Tcp::no_delay(true), error);
-  auto admission = std::make_shared<Admission>(*this, Caller{from, is_stranger(socket)});
-  std::make_shared<HttpConnection>(*this, std::move(socket), std::move(admission))->read();
 }
+
+void ServerWorks::take_body(HttpConnection& connection, const std::string& body) {
+  const auto code = code_from(body);
+  if (!code) return connection.refuse(400, code.error().message);
+  const auto paired = room_.pair(connection.caller().from, *code);
+  if (!paired) return connection.refuse(403, "the code is not good, or no longer: ask for another one");
+  const nlohmann::ordered_json json{{"token", paired->token}, {"role", to_text(paired->role)}};
+  connection.answer_document(std::make_shared<const std::string>(json.dump()), kJson);
+}
+
+Caller ServerWorks::caller_of(Tcp::socket& socket, std::string from) { return {std::move(from), is_stranger(socket)}; }
 
 bool ServerWorks::is_stranger(Tcp::socket& socket) const {
   if (settings_.rules.needs_token) return false;  // nobody is trusted for where she is
@@ -110,9 +83,9 @@ bool ServerWorks::is_stranger(Tcp::socket& socket) const {
 }
 
 void ServerWorks::tick() {
-  ticker_.expires_after(kTick);
-  ticker_.async_wait([this](Error stopped) {
-    if (stopped || ends_) return;
+  ticker().expires_after(kTick);
+  ticker().async_wait([this](Error stopped) {
+    if (stopped || ends()) return;
     for (const auto& [id, socket] : sockets_) {
       if (room_.welcome(id)) socket->look_at_nodes();
     }
@@ -124,16 +97,11 @@ void ServerWorks::tick() {
   });
 }
 
-void ServerWorks::end() {
-  ends_ = true;
-  Error error;
-  acceptor_.close(error);
-  ticker_.cancel();
+bool ServerWorks::say_farewell() {
+  ticker().cancel();
   askers_.clear();
   for (const auto& [id, socket] : sockets_) socket->close(Room::kGoingAway, "the run has ended");
-  if (sockets_.empty()) return context_.stop();
-  pause_.expires_after(kFarewell);
-  pause_.async_wait([this](Error) { context_.stop(); });
+  return !sockets_.empty();
 }
 
 void ServerWorks::send(PersonId to, const Letter& letter) {
@@ -156,7 +124,7 @@ PersonId ServerWorks::enter(WebSocket& socket, const Caller& caller) {
 
 void ServerWorks::leave(PersonId who) {
   sockets_.erase(who);
-  if (!ends_) room_.leave(who);
+  if (!ends()) room_.leave(who);
 }
 
 void ServerWorks::refused(const std::string& from, const std::string& what, const std::string& why) {
@@ -184,18 +152,6 @@ void ServerWorks::take_looks(std::size_t k, const Letter& looks) {
 std::vector<std::size_t> ServerWorks::looks_wanted() {
   const std::lock_guard lock(wanted_mutex_);
   return std::exchange(wanted_, {});
-}
-
-template <class Work>
-void ServerWorks::post(Work work) {
-  if (posted_.fetch_add(1, std::memory_order_relaxed) >= kMostPosted) {
-    posted_.fetch_sub(1, std::memory_order_relaxed);
-    return;
-  }
-  asio::post(context_, [this, work = std::move(work)]() mutable {
-    posted_.fetch_sub(1, std::memory_order_relaxed);
-    if (!ends_) work();
-  });
 }
 
 Result<std::unique_ptr<ConsoleServer>> ConsoleServer::open(Settings settings, OrderBox& orders, AuditLog* audit,

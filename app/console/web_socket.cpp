@@ -16,18 +16,18 @@ constexpr std::size_t kLongestReason = 120;  // RFC 6455, 5.5: a control frame h
 
 }  // namespace
 
-WebSocket::WebSocket(ServerWorks& works, beast::tcp_stream stream, std::shared_ptr<ServerWorks::Admission> admission)
-    : works_(works), admission_(std::move(admission)), stream_(std::move(stream)) {}
+WebSocket::WebSocket(HttpServer& server, beast::tcp_stream stream, std::shared_ptr<HttpServer::Admission> admission)
+    : server_(server), admission_(std::move(admission)), stream_(std::move(stream)) {}
 
 WebSocket::~WebSocket() {
-  if (id_ != 0) works_.leave(id_);
+  if (id_ != 0) server_.leave(id_);
 }
 
 void WebSocket::accept(Request request) {
   request_ = std::move(request);
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = kHandshake;
-  timeout.idle_timeout = works_.settings().silent_for;
+  timeout.idle_timeout = server_.limits().silent_for;
   timeout.keep_alive_pings = true;
   stream_.set_option(timeout);
   stream_.read_message_max(kLongestMessage);
@@ -36,7 +36,7 @@ void WebSocket::accept(Request request) {
     if (error) return;
     self->request_ = {};
     self->open_ = true;
-    self->id_ = self->works_.enter(*self, self->admission_->caller());
+    self->id_ = self->server_.enter(*self, self->admission_->caller());
     self->read();
   });
 }
@@ -60,16 +60,16 @@ void WebSocket::on_read(Error error) {
   }
   const std::string message = beast::buffers_to_string(buffer_.data());
   buffer_.clear();
-  works_.room().heard(id_, message);
+  server_.heard(id_, message);
   read();
 }
 
 void WebSocket::send(const Letter& letter) {
   if (closing_ || !open_) return;
-  if (letters_.size() >= kMostLetters) {
+  if (letters_.size() >= server_.limits().letters) {
     // No farewell can reach who reads nothing.
     closing_ = true;
-    works_.refused(admission_->caller().from, "reading", "cut off: too slow");
+    server_.refused(admission_->caller().from, "reading", "cut off: too slow");
     beast::get_lowest_layer(stream_).close();
     return;
   }
@@ -84,7 +84,7 @@ void WebSocket::send_state(const Letter& letter) {
 }
 
 void WebSocket::look_at_nodes() {
-  if (closing_ || !open_ || works_.settings().nodes == nullptr) return;
+  if (closing_ || !open_ || server_.nodes() == nullptr) return;
   nodes_due_ = true;
   pump();
 }
@@ -102,7 +102,7 @@ void WebSocket::pump() {
     return write(true);
   }
   if (!std::exchange(nodes_due_, false)) return;
-  auto frame = nodes_.frame(*works_.settings().nodes);
+  auto frame = nodes_.frame(*server_.nodes());
   if (!frame) return;
   current_ = std::make_shared<const std::string>(*std::move(frame));
   write(false);

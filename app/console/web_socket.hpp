@@ -10,8 +10,8 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include "app/console/http_server.hpp"
 #include "app/console/node_frame.hpp"
-#include "app/console/server_works.hpp"
 
 namespace footlight::app {
 
@@ -20,9 +20,8 @@ namespace footlight::app {
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
-  static constexpr std::size_t kMostLetters = 1024;
 
-  WebSocket(ServerWorks& works, boost::beast::tcp_stream stream, std::shared_ptr<ServerWorks::Admission> admission);
+  WebSocket(HttpServer& server, boost::beast::tcp_stream stream, std::shared_ptr<HttpServer::Admission> admission);
   ~WebSocket();
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
@@ -43,8 +42,8 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   void write(bool text);
   void say_goodbye();
 
-  ServerWorks& works_;
-  std::shared_ptr<ServerWorks::Admission> admission_;
+  HttpServer& server_;
+  std::shared_ptr<HttpServer::Admission> admission_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;
   Request request_;
   boost::beast::flat_buffer buffer_;

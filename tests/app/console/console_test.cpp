@@ -72,7 +72,7 @@ TEST(ConsoleOfARun, HandsOverBetweenDeskAndPage) {
                 HasSubstr(R"({"order":"tempo 80","who":"Ana","refused":false,"text":"done","id":4})"));
     console.plan_taken();
     (void)desk.look(view);
-    EXPECT_EQ(page.heard("epoch"), R"({"epoch":2})");
+    EXPECT_THAT(page.heard("epoch"), HasSubstr(R"({"epoch":2,"plan":")"));
     RawClient other(static_cast<std::uint16_t>(std::stoi(console.address().substr(17))));
     other.send(other.get("/api/show"));
     EXPECT_THAT(other.response(), HasSubstr(R"({"epoch":2,)"));
