@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/bundle_command.hpp"
+#include "app/cast_command.hpp"
 #include "app/check_command.hpp"
 #include "app/command.hpp"
 #include "app/commission_command.hpp"
@@ -42,7 +43,7 @@ constexpr AddCommand kCommands[] = {
     add_export_command,  add_sheets_command,   add_preview_command,    add_report_command,  add_diff_command,
     add_dryrun_command,  add_dark_command,     add_devices_command,    add_sim_command,     add_run_command,
     add_bundle_command,  add_import_command,   add_commission_command, add_journal_command, add_freeze_command,
-    add_console_command, add_painting_command,
+    add_console_command, add_painting_command, add_cast_command,
 };
 
 constexpr const char* kFooter =

@@ -36,7 +36,7 @@ ONLY_IN = {  # library header -> the only places that may include it
     r"RtMidi\.h": r"^app/midi/",
     r"lo/": r"^app/remote/|^app/time/",
     r"CLI/": r"^app/",
-    r"boost/(asio|beast)": r"^app/console/",
+    r"boost/(asio|beast)": r"^app/(console/|cast/follower)",
 }
 
 

@@ -23,7 +23,7 @@ def free_port():
 class Page:
     """A client of the console that follows what it is told (docs/console.md)."""
 
-    def __init__(self, port, name, token=None, host=None):
+    def __init__(self, port, name, token=None, host=None, hello=None):
         self.socket = socket.create_connection(("127.0.0.1", port), 20)
         host = host or f"127.0.0.1:{port}"
         self.send(f"GET /ws HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
@@ -38,7 +38,7 @@ class Page:
         if not head.startswith(b"HTTP/1.1 101"):
             raise ConnectionError(head)
         self.state, self.told, self.frames, self.code = {}, [], [], None
-        self.say(hello={"name": name, **({"token": token} if token else {})})
+        self.say(hello=hello or {"name": name, **({"token": token} if token else {})})
         self.reader = threading.Thread(target=self.read, daemon=True)
         self.reader.start()
 
@@ -104,10 +104,10 @@ class Page:
         return known
 
 
-def make_cases(Stage, footlight, program):
-    """The test cases, over stage.py's."""
+def make_stage(Stage, program):
+    """What test cases of a run with a console derive from, over stage.py's."""
 
-    class Console(Stage):
+    class Led(Stage):
         def run_with_console(self, *options, place=None):
             self.make_show()
             self.serve()
@@ -152,6 +152,13 @@ def make_cases(Stage, footlight, program):
             page.until("the end", phase="finished")
             wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in page.state["buses"]), "every marker")
 
+    return Led
+
+
+def make_cases(Stage, footlight, program):
+    """The test cases, over stage.py's."""
+
+    class Console(make_stage(Stage, program)):
         def test_a_show_is_led_from_the_console_and_every_document_is_right(self):
             self.run_with_console()
             page = Page(self.port, "Ana")

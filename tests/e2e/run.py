@@ -20,6 +20,7 @@ import sys
 import tempfile
 import unittest
 
+import cast
 import console
 import devices
 import editing
@@ -97,6 +98,7 @@ Devices = devices.make_cases(Stage, footlight)
 Ola = ola.make_cases(Stage)
 Rehearse = rehearse.make_cases(Stage, lambda: PROGRAM)
 Console = console.make_cases(Stage, footlight, lambda: PROGRAM)
+Cast = cast.make_cases(Stage, lambda: PROGRAM, FULL)
 Survive = survive.make_cases(Stage, footlight, lambda: PROGRAM, FULL)
 Remote = remote.make_cases(Stage, footlight, lambda: PROGRAM, rehearse.Desk, stage.SHOW)
 Editing = editing.make_cases(Stage, lambda: PROGRAM)
