@@ -2,6 +2,7 @@
 #include "planner/collective/affinity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -35,15 +36,19 @@ class Messages {
         responsibility_(rows.to.size(), 0),
         availability_(rows.to.size(), 0),
         own_arc_(rows.size()),
-        column_first_(rows.size() + 1, 0),
-        column_(rows.to.size()) {
+        column_first_(rows.size() + 1, 0) {
     index_columns();
     break_ties();
   }
 
   void pass() {
     for_each_point(rows_.size(), [&](std::uint32_t i) { respond(i); });
-    for_each_point(rows_.size(), [&](std::uint32_t k) { offer(k); });
+    if (all_pairs()) {
+      const std::uint32_t blocks = (rows_.size() + kBlock - 1) / kBlock;
+      tbb::parallel_for(0U, blocks, [&](std::uint32_t b) { offer_block(b * kBlock); });
+    } else {
+      for_each_point(rows_.size(), [&](std::uint32_t k) { offer(k); });
+    }
   }
 
   [[nodiscard]] std::vector<char> exemplars() const {
@@ -55,7 +60,17 @@ class Messages {
   }
 
  private:
+  /// So many columns are gone through together where all pairs are known: their numbers are side by side in each row.
+  static constexpr std::uint32_t kBlock = 256;
+
+  [[nodiscard]] bool all_pairs() const { return rows_.to.size() == std::size_t{rows_.size()} * rows_.size(); }
+
   void index_columns() {
+    if (all_pairs()) {
+      for (std::uint32_t i = 0; i < rows_.size(); ++i) own_arc_[i] = i * rows_.size() + i;
+      return;
+    }
+    column_.resize(rows_.to.size());
     for (const std::uint32_t k : rows_.to) ++column_first_[k + 1];
     for (std::uint32_t k = 0; k < rows_.size(); ++k) column_first_[k + 1] += column_first_[k];
     std::vector<std::uint32_t> next(column_first_.begin(), column_first_.end() - 1);
@@ -97,12 +112,14 @@ class Messages {
         second = both;
       }
     }
-    for (std::uint32_t e = rows_.first[i]; e < rows_.first[i + 1]; ++e) {
-      const float other = e == best_arc ? second : best;
+    const auto answer = [&](std::uint32_t e, float other) {
       // Somebody who knows nobody else is an exemplar for certain; finite, so that damping can go on.
       const float fresh = other == kNever ? std::numeric_limits<float>::max() / 4 : similarity_[e] - other;
-      responsibility_[e] = damping_ * responsibility_[e] + (1 - damping_) * fresh;
-    }
+      return damping_ * responsibility_[e] + (1 - damping_) * fresh;
+    };
+    const float to_best = answer(best_arc, second);
+    for (std::uint32_t e = rows_.first[i]; e < rows_.first[i + 1]; ++e) responsibility_[e] = answer(e, best);
+    responsibility_[best_arc] = to_best;
   }
 
   void offer(std::uint32_t k) {
@@ -117,6 +134,34 @@ class Messages {
       const double fresh =
           e == own_arc_[k] ? sum : std::min(0.0, own + sum - std::max(0.0, double{responsibility_[e]}));
       availability_[e] = damping_ * availability_[e] + (1 - damping_) * static_cast<float>(fresh);
+    }
+  }
+
+  /// The same for some columns of all pairs, row by row, with the same sums.
+  void offer_block(std::uint32_t first) {
+    const std::uint32_t size = rows_.size();
+    const std::uint32_t count = std::min(kBlock, size - first);
+    std::array<double, kBlock> sum{};
+    std::array<double, kBlock> own{};
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const float* row = responsibility_.data() + std::size_t{i} * size + first;
+      if (i >= first && i < first + count) {
+        own[i - first] = row[i - first];
+        for (std::uint32_t c = 0; c < count; ++c) sum[c] += i == first + c ? 0.0 : double{std::max(0.0F, row[c])};
+        continue;
+      }
+      for (std::uint32_t c = 0; c < count; ++c) sum[c] += double{std::max(0.0F, row[c])};
+    }
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const float* row = responsibility_.data() + std::size_t{i} * size + first;
+      float* offered = availability_.data() + std::size_t{i} * size + first;
+      const float before = i >= first && i < first + count ? offered[i - first] : 0;
+      for (std::uint32_t c = 0; c < count; ++c) {
+        const double fresh = std::min(0.0, own[c] + sum[c] - double{std::max(0.0F, row[c])});
+        offered[c] = damping_ * offered[c] + (1 - damping_) * static_cast<float>(fresh);
+      }
+      if (i < first || i >= first + count) continue;
+      offered[i - first] = damping_ * before + (1 - damping_) * static_cast<float>(sum[i - first]);
     }
   }
 

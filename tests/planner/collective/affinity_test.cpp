@@ -133,6 +133,41 @@ TEST(AllSimilarities, HaveTheMedianAsPreference) {
   EXPECT_EQ(rows.similarity[0], -1);
 }
 
+TEST(AffinityPropagation, OfAllPairsGoesThroughThemInBlocksWithTheSameResult) {
+  // One more who knows nobody: not all pairs any more, so that messages go one by one.
+  const Pieces crowd = pieces_of(6, 7, 2, 3);
+  const SimilarityRows all = all_similarities(crowd.from, crowd.to);
+  ASSERT_GT(all.size(), 256U) << "more than a block";
+  SimilarityRows with_stranger = all;
+  with_stranger.add(all.size(), all.similarity[0]);
+  with_stranger.close_row();
+  const Clusters blocks = affinity_propagation(all, {});
+  Clusters one_by_one = affinity_propagation(with_stranger, {});
+  EXPECT_EQ(one_by_one.exemplar_of.back(), all.size());
+  one_by_one.exemplar_of.pop_back();
+  EXPECT_EQ(blocks.exemplar_of, one_by_one.exemplar_of);
+  EXPECT_EQ(blocks.rounds, one_by_one.rounds);
+  EXPECT_GT(blocks.count(), 1U);
+}
+
+TEST(Subgroups, SparseIsAsGoodAsDenseWhereACrowdHasNoPieces) {
+  // A block becomes a disc: nobody belongs together of herself, and the partitions differ. Both judged by all pairs.
+  std::vector<Point> from, to;
+  for (int p = 0; p < 400; ++p) {
+    from.push_back({1.5 * (p % 20), 1.5 * static_cast<double>(p / 20)});
+    const double radius_m = std::sqrt(p + 0.5);
+    to.push_back({80 + radius_m * std::cos(2.399963229728653 * p), 15 + radius_m * std::sin(2.399963229728653 * p)});
+  }
+  const SimilarityRows all = all_similarities(from, to);
+  const Clusters dense = affinity_propagation(all, {});
+  const Clusters sparse = affinity_propagation(near_similarities(from, to, 48, 64), {});
+  EXPECT_TRUE(dense.converged);
+  EXPECT_TRUE(sparse.converged);
+  double net = 0;
+  for (std::uint32_t i = 0; i < 400; ++i) net += double{all.similarity[i * 400 + sparse.exemplar_of[i]]};
+  EXPECT_GT(net, 1.1 * dense.net_similarity) << "both are below 0";
+}
+
 TEST(Subgroups, SparseAndDenseFindTheSamePieces) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Pieces crowd = pieces_of(6, 7, 0.2, seed);
