@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/grid.hpp"
+#include "planner/motion/lanes.hpp"
 
 namespace footlight::planner::srd {
 
@@ -13,8 +14,8 @@ namespace footlight::planner::srd {
 
 /// Shortens a vector to `most`.
 [[nodiscard]] inline Point within(Point v, double most) {
-  const double long_ = length(v);
-  return long_ > most ? most / long_ * v : v;
+  const double squared = squared_length(v);
+  return squared > most * most ? most / std::sqrt(squared) * v : v;
 }
 
 /// Distance constraint between two people of equal mass where they come nearer than `apart_m`, and nothing otherwise:
@@ -72,16 +73,17 @@ struct Moving {
   if (!touch || *touch > horizon_s) return std::nullopt;
   const Point x = i.at - j.at;
   const Point v = i.velocity - j.velocity;
-  const double depth_m = apart_m - length(x + (*touch + step_s) * v);
+  const double depth_m = apart_m - std::sqrt(squared_length(x + (*touch + step_s) * v));
   if (depth_m <= 0) return std::nullopt;
   const Point contact = x + *touch * v;
   // To the side on which i passes: across the contact, where the relative velocity leads.
   const Point across{-contact.y, contact.x};
-  const double sideways = dot(across, v) / (apart_m * length(v));
-  constexpr double kStraightAt = 1e-6;
-  const Point to =
-      std::abs(sideways) > kStraightAt ? (sideways > 0 ? across : Point{-across.x, -across.y}) : Point{v.y, -v.x};
-  return side * k * std::exp(-*touch * *touch / horizon_s) * depth_m / length(to) * to;
+  const double sideways = dot(across, v);
+  constexpr double kStraightAt = 1e-6;  // of the relative speed
+  const bool straight = sideways * sideways <= kStraightAt * kStraightAt * apart_m * apart_m * squared_length(v);
+  const Point to = straight ? Point{v.y, -v.x} : sideways > 0 ? across : Point{-across.x, -across.y};
+  const double share = side * k * lanes::exp(-*touch * *touch / horizon_s);
+  return share * depth_m / std::sqrt(squared_length(to)) * to;
 }
 
 /// Desired velocity toward a destination that moves itself: where it will be in `arrive_s`, no faster than kappa.

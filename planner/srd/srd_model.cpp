@@ -83,6 +83,9 @@ std::vector<Point> SrdModel::destinations(double at_s) const {
   return out;
 }
 
-void SrdModel::step(const State& now, State& next) const { Step(*this, now, next).run(); }
+void SrdModel::step(const State& now, State& next) const {
+  const auto memory = memory_.take();
+  Step(*this, now, next, *memory).run();
+}
 
 }  // namespace footlight::planner::srd

@@ -9,8 +9,10 @@
 #include "core/result.hpp"
 #include "planner/motion/crowd.hpp"
 #include "planner/motion/model.hpp"
+#include "planner/motion/spare.hpp"
 #include "planner/srd/free_floor.hpp"
 #include "planner/srd/groups.hpp"
+#include "planner/srd/step_memory.hpp"
 
 namespace footlight::planner::srd {
 
@@ -60,6 +62,7 @@ class SrdModel {
   std::vector<double> radius_m_;    ///< half of the room of each person
   double widest_m_ = 0;             ///< of these
   double fastest_mps_ = 0;
+  Spare<StepMemory> memory_;
 };
 
 }  // namespace footlight::planner::srd
