@@ -178,6 +178,7 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   const SteadyClock clock;
   const auto remote = RemoteControl::open(options.remote, show, planned.plan(), desk, clock, !options.go);
   if (!remote) return remote.error();
+  if (cut && cut->place.emergency_hold) (*remote)->take_up_emergency_hold();
   ShowEditing editing(desk,
                       {planned, rig, options.choice.show, state_folder(options.state), options.count_in(), attendance});
   desk.add(editing);
@@ -192,7 +193,7 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   }
   surviving.join(desk);
   live.epoch = epoch;
-  ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go || cut);
+  ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go);
   desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.changes = &editing;
@@ -313,7 +314,9 @@ int run(Session& session, const Options& options) {
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
   if (auto wires = check_wires(session, rig.buses); !wires) return session.fail(wires.error());
   Readiness readiness(options.ready.scope);
-  const BusesToAsk wires{options.choice.show, options.transports, rig, cut.has_value()};
+  BusesToAsk wires{options.choice.show, options.transports, rig};
+  // Whatever was so before the machine was started again, somebody has to look.
+  if (cut) wires.outlived = cut->same_start ? cut->place.readiness : "";
   if (auto ready = preflight(session, wires, planned->loaded.show, readiness); !ready)
     return session.fail(ready.error());
   if (options.ready.scope == Scope::none) {

@@ -16,8 +16,8 @@ namespace {
 
 constexpr auto kTryAgain = std::chrono::seconds(1);
 
-/// Where the show is, without what a moving position changes by itself.
-std::string fixed_part(const ShowState& state) {
+/// A place, without what a moving position changes by itself.
+std::string fixed_part(const ShowState& state, const Place& place) {
   const auto& where = state.where;
   const auto ns = [](const std::optional<Instant>& at) { return at ? at->time_since_epoch().count() : -1; };
   std::string text = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state.phase), where.cue.value_or(999'999),
@@ -25,6 +25,7 @@ std::string fixed_part(const ShowState& state) {
                                  where.loop.has_value());
   if (where.loop) text += fmt::format(" {} {}", ns(where.loop->from), ns(where.loop->to));
   if (!where.runs_since) text += fmt::format(" {} {}", ns(where.position), where.waits);
+  text += fmt::format(" {} {} {} {}", place.time.on, place.time.armed, place.emergency_hold, place.readiness);
   return text;
 }
 
@@ -63,8 +64,8 @@ void Journal::look(const DeskView& view, RunDesk& desk) {
   position_ = state.position;
   // The state is up to 50 ms old when it is seen: the least difference is the one of the clocks.
   machine_ahead_ = std::min(machine_ahead_, machine_time() - state.at.time_since_epoch());
-  const Place place = place_of(state, machine_ahead_);
-  std::string fixed = fixed_part(state);
+  const Place place = place_of(view, machine_ahead_);
+  std::string fixed = fixed_part(state, place);
   const bool moves = place.where.runs_since.has_value() || place.in_reset;
   if (!last_at_ || fixed != last_told_ || (moves && state.at - *last_at_ >= kPlaceEvery)) {
     last_at_ = state.at;

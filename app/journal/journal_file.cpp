@@ -22,7 +22,8 @@ constexpr const char* kSchema[] = {
     "position_ns INTEGER NOT NULL, cue INTEGER, waits INTEGER NOT NULL, runs_since_ns INTEGER, percent INTEGER NOT "
     "NULL, "
     "hold_at_ns INTEGER, step_to_ns INTEGER, loop_from_ns INTEGER, loop_to_ns INTEGER, over INTEGER NOT NULL, "
-    "in_reset INTEGER NOT NULL)",
+    "in_reset INTEGER NOT NULL, time_on INTEGER NOT NULL, time_armed INTEGER NOT NULL, emergency_hold INTEGER NOT "
+    "NULL, readiness TEXT NOT NULL)",
     "CREATE INDEX entries_of_run ON entries(run)",
     "CREATE INDEX places_of_run ON places(run)",
 };
@@ -37,7 +38,9 @@ Status<> judge(Database& database) {
     return input_error("it is no journal of a run");
   }
   if (const auto version = pragma(database, "PRAGMA user_version"); version != kJournalVersion) {
-    return input_error(fmt::format("it has version {}, this program writes version {}", version, kJournalVersion));
+    return input_error(
+        fmt::format("it has version {}, this program writes version {} (move it away, and a new one is begun)", version,
+                    kJournalVersion));
   }
   return Done{};
 }
@@ -109,7 +112,10 @@ bool JournalFile::put(const Place& place, Statement& row) const {
   bind_instant(row, where.step_to);
   bind_instant(row, where.loop ? std::optional(where.loop->from) : std::nullopt);
   bind_instant(row, where.loop ? std::optional(where.loop->to) : std::nullopt);
-  return row.bind(std::int64_t{place.over ? 1 : 0}).bind(std::int64_t{place.in_reset ? 1 : 0}).run();
+  for (const bool truth : {place.over, place.in_reset, place.time.on, place.time.armed, place.emergency_hold}) {
+    row.bind(std::int64_t{truth ? 1 : 0});
+  }
+  return row.bind(std::string_view(place.readiness)).run();
 }
 
 Status<> JournalFile::write(std::span<const JournalEntry> entries, std::span<const Place> places) {
@@ -119,7 +125,8 @@ Status<> JournalFile::write(std::span<const JournalEntry> entries, std::span<con
       "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   Statement place_row = database_.prepare(
       "INSERT INTO places(run, machine_ns, position_ns, cue, waits, runs_since_ns, percent, hold_at_ns, step_to_ns, "
-      "loop_from_ns, loop_to_ns, over, in_reset) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "loop_from_ns, loop_to_ns, over, in_reset, time_on, time_armed, emergency_hold, readiness) VALUES(?, ?, ?, ?, ?, "
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   bool whole = true;
   for (const JournalEntry& entry : entries) whole = whole && put(entry, entry_row);
   for (const Place& place : places) whole = whole && put(place, place_row);
@@ -179,7 +186,8 @@ std::vector<JournalEntry> entries_of(Database& database, std::int64_t run) {
 std::optional<Place> last_place_of(Database& database, std::int64_t run) {
   Statement row = database.prepare(
       "SELECT machine_ns, position_ns, cue, waits, runs_since_ns, percent, hold_at_ns, step_to_ns, loop_from_ns, "
-      "loop_to_ns, over, in_reset FROM places WHERE run = ? ORDER BY id DESC LIMIT 1");
+      "loop_to_ns, over, in_reset, time_on, time_armed, emergency_hold, readiness FROM places WHERE run = ? ORDER BY "
+      "id DESC LIMIT 1");
   row.bind(run);
   if (!row.step()) return std::nullopt;
   Place place;
@@ -197,6 +205,9 @@ std::optional<Place> last_place_of(Database& database, std::int64_t run) {
   if (from && to && *from < *to) where.loop = {*from, *to};
   place.over = row.integer(10).value_or(0) != 0;
   place.in_reset = row.integer(11).value_or(0) != 0;
+  place.time = {row.integer(12).value_or(0) != 0, row.integer(13).value_or(0) != 0};
+  place.emergency_hold = row.integer(14).value_or(0) != 0;
+  place.readiness = row.text(15).value_or("");
   return place;
 }
 

@@ -15,7 +15,7 @@
 namespace footlight::app {
 
 inline constexpr std::int64_t kJournalApplicationId = 0x464C4A4E;  ///< "FLJN"
-inline constexpr std::int64_t kJournalVersion = 1;
+inline constexpr std::int64_t kJournalVersion = 2;
 
 /// One run of the program, as its journal has it.
 struct JournalRun {

@@ -25,6 +25,11 @@ CueThread::CueThread(controller::Rehearsal& rehearsal, TimeRules rules, SharedTa
       waiting_(clock),
       go_at_(rehearsal.engine().plays().size(), kNever) {}
 
+void CueThread::take_up(const TakenUp& up, Instant now) noexcept {
+  rehearsal_->take_up(up.where, now);
+  chase_.take_up(up.time);
+}
+
 void CueThread::start(std::function<void()> news) {
   news_ = std::move(news);
   publish(clock_.now());

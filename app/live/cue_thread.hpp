@@ -42,6 +42,12 @@ struct ShowState {
   std::uint32_t plan = 0;  ///< whose cues and switches these are (SharedTarget)
 };
 
+/// How a show goes on that another program led.
+struct TakenUp {
+  controller::Rehearsal::Whereabouts where{};
+  controller::Chase::Word time{};
+};
+
 /// A command and what came of it.
 struct Answer {
   controller::Command command{};
@@ -59,6 +65,8 @@ class CueThread {
   CueThread(const CueThread&) = delete;
   CueThread& operator=(const CueThread&) = delete;
 
+  /// Before the start.
+  void take_up(const TakenUp& up, Instant now) noexcept;
   /// @param news called when the target has changed; must not block
   void start(std::function<void()> news);
   void stop();

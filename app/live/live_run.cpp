@@ -140,7 +140,7 @@ Result<LiveReport> LiveRun::play() {
   BareTimer bare(clock_);
   controller::Rehearsal& rehearsal = plans_.rehearsal();
   if (options_.take_up) {
-    rehearsal.take_up(options_.take_up(clock_.now()), clock_.now());
+    cue_.take_up(options_.take_up(clock_.now()), clock_.now());
   } else if (options_.position) {
     rehearsal.begin_at(*options_.position);
   }

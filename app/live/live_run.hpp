@@ -97,6 +97,7 @@ struct ReadinessView {
   std::string_view scope{};  ///< empty: nobody asks
   bool armed = true;
   std::vector<Stage> stages{};
+  std::string outlives{};  ///< the program: for another one that takes the run up (Readiness::outlives)
 };
 
 /// What stopping the show at once would do, and going on from there (docs/looks.md).
@@ -140,6 +141,7 @@ struct DeskView {
   std::string time_source = "internal";
   EditView edit{};
   std::vector<GateView> gates{};
+  bool emergency_hold = false;  ///< until somebody acknowledges it
   ReadinessView readiness{};
   std::vector<std::string> against{};  ///< what stands against the next GO, or holds: "trap closed: open"
   /// Of each cue, not to be kept; null: nobody asked.
@@ -166,7 +168,7 @@ struct LiveOptions {
   /// The show begins here and stands, held, also in the middle of a walk: a run that was cut off. None: at the top.
   std::optional<Instant> position;
   /// Asked just before the first lamp, in whose clock it answers: the show goes on from here. None: `position`.
-  std::function<controller::Rehearsal::Whereabouts(Instant now)> take_up;
+  std::function<TakenUp(Instant now)> take_up;
   /// The desk, asked again and again by the calling thread; none: the run ends with the show.
   std::function<DeskWishes(const DeskView&)> desk;
   /// What came of each command, in their order.

@@ -145,10 +145,9 @@ Status<> preflight(Session& session, const BusesToAsk& buses, const Show& show, 
   readiness.tell(Stage::plan, State::success, "proved, and of this very show");
   if (readiness.scope() == Scope::none) return Done{};
   readiness.tell(Stage::time, State::skipped, "the show's own clock");
-  if (readiness.scope() != Scope::live || buses.taken_up) {
-    readiness.tell(Stage::probes, State::skipped, buses.taken_up ? "the run is taken up" : "only --scope live asks");
-    return Done{};
-  }
+  if (readiness.scope() != Scope::live) readiness.tell(Stage::probes, State::skipped, "only --scope live asks");
+  if (buses.outlived) readiness.take_up(*buses.outlived);
+  if (readiness.scope() != Scope::live || buses.outlived) return Done{};
   if (auto called = call_roll(session, buses, readiness); !called) return called;
   return light_probes(session, show, buses.wires, readiness);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/load.hpp"
@@ -23,7 +24,8 @@ struct BusesToAsk {
   std::string show;        ///< its file
   std::string transports;  ///< transport map; empty: none
   const Rig& wires;        ///< with its real URLs
-  bool taken_up = false;   ///< a run that was cut off: nobody has time to look at lamps
+  /// Of the run that is taken up, as Readiness::outlives: nobody has time to look at lamps. None: a run of its own.
+  std::optional<std::string> outlived{};
 };
 
 /// What has to be done before a show has the buses for itself, where the scope is live: every bus is asked who is

@@ -10,6 +10,10 @@ namespace footlight::app {
 namespace {
 
 constexpr std::size_t kNamed = 8;  // nodes of a message
+// Of a text that outlives the program; one that is longer is another text then, and overridden no more.
+constexpr std::size_t kLongestText = 300;
+
+using Json = nlohmann::ordered_json;
 
 bool done(Readiness::State state) {
   using State = Readiness::State;
@@ -48,15 +52,16 @@ Readiness::Readiness(Scope scope) : scope_(scope) {}
 void Readiness::tell(Stage stage, State state, std::string text, bool lock) {
   Fact& fact = facts_.at(static_cast<std::size_t>(stage));
   if (fact.lock) return;  // for this run
-  // What was overridden was this; another error is another decision.
-  if (state != State::error || text != fact.text) fact.overridden_by.clear();
+  // An override waits for an answer that is still on its way.
+  if (state != State::waiting && (state != State::error || text != fact.overridden)) fact.overridden_by.clear();
   fact.state = state;
   fact.text = std::move(text);
   fact.lock = lock;
 }
 
 Readiness::State Readiness::state_of(const Fact& fact) const {
-  return fact.state == State::error && !fact.overridden_by.empty() && !fact.lock ? State::warning : fact.state;
+  const bool overridden = !fact.overridden_by.empty() && !fact.lock && fact.text == fact.overridden;
+  return fact.state == State::error && overridden ? State::warning : fact.state;
 }
 
 Result<std::string> Readiness::override_stage(std::string_view name, std::string_view who) {
@@ -71,6 +76,7 @@ Result<std::string> Readiness::override_stage(std::string_view name, std::string
     }
     if (fact.lock) return input_error(fmt::format("override: {}: {}: nobody answers for that", name, fact.text));
     fact.overridden_by = who;
+    fact.overridden = fact.text;
     return fmt::format("{} is overridden by {}: {}", name, who, fact.text);
   }
   return input_error(fmt::format("override: no stage \"{}\" (there are {})", name, all));
@@ -109,7 +115,8 @@ std::vector<Readiness::Report> Readiness::report() const {
   for (std::size_t s = 0; s < kStages; ++s) {
     State state = state_of(facts_[s]);
     if (state == State::off && reached && scope_ != Scope::none) state = State::next;
-    out.push_back({to_text(static_cast<Stage>(s)), state, facts_[s].text, !facts_[s].overridden_by.empty()});
+    out.push_back({to_text(static_cast<Stage>(s)), state, facts_[s].text,
+                   !facts_[s].overridden_by.empty() && facts_[s].text == facts_[s].overridden});
     reached = reached && done(state);
   }
   return out;
@@ -125,6 +132,43 @@ std::vector<std::string> Readiness::against() const {
   }
   if (out.empty()) out.emplace_back(scope_ == Scope::none ? "the scope is none" : "nobody has said arm");
   return out;
+}
+
+std::string Readiness::outlives() const {
+  Json stages = Json::array();
+  for (std::size_t s = 0; s < kStages; ++s) {
+    const Fact& fact = facts_[s];
+    const bool probes = static_cast<Stage>(s) == Stage::probes;  // asked once, the others again and again
+    if (!probes && !fact.lock && fact.overridden_by.empty()) continue;
+    stages.push_back({{"stage", s},
+                      {"state", static_cast<int>(fact.state)},
+                      {"text", fact.text.substr(0, kLongestText)},
+                      {"lock", fact.lock},
+                      {"by", fact.overridden_by.substr(0, kLongestText)},
+                      {"overridden", fact.overridden.substr(0, kLongestText)}});
+  }
+  std::string all = Json{{"scope", to_text(scope_)}, {"armed", armed_}, {"stages", std::move(stages)}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
+  return all.size() <= kLongestOutlives ? all : "";
+}
+
+void Readiness::take_up(std::string_view outlives) {
+  if (scope_ == Scope::live) tell(Stage::probes, State::error, "nobody has looked since the run was cut off");
+  const Json before = Json::parse(outlives, nullptr, false);
+  if (!before.is_object() || before.value("scope", Json()) != Json(to_text(scope_))) return;
+  for (const Json& stage : before.value("stages", Json::array())) {
+    const Json number = stage.is_object() ? stage.value("stage", Json()) : Json();
+    const Json state = stage.is_object() ? stage.value("state", Json()) : Json();
+    if (!number.is_number_unsigned() || number.get<std::uint64_t>() >= kStages) return;
+    if (!state.is_number_unsigned() || state.get<std::uint64_t>() > static_cast<std::uint64_t>(State::error)) return;
+    const auto text = [&](const char* key) {
+      const Json value = stage.value(key, Json());
+      return value.is_string() ? value.get<std::string>() : std::string();
+    };
+    facts_.at(number.get<std::size_t>()) = {static_cast<State>(state.get<int>()), text("text"),
+                                            stage.value("lock", Json()) == Json(true), text("by"), text("overridden")};
+  }
+  armed_ = scope_ == Scope::live && before.value("armed", Json()) == Json(true);
 }
 
 std::string stages_text(const Readiness& readiness) {

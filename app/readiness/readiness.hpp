@@ -30,6 +30,7 @@ class Readiness {
  public:
   enum class Stage : std::uint8_t { show, plan, buses, roll_call, plan_on_nodes, probes, looks, time };
   static constexpr std::size_t kStages = 8;
+  static constexpr std::size_t kLongestOutlives = 8192;
   enum class State : std::uint8_t { off, next, waiting, success, skipped, warning, error };
   struct Report {
     std::string_view name;
@@ -49,6 +50,13 @@ class Readiness {
   Result<std::string> arm();
   Result<std::string> disarm();
 
+  /// What another program has to know that takes this run up, as text: whether GO is armed, what somebody has said of
+  /// the probe lamps, what is locked and what is overridden. At most kLongestOutlives bytes.
+  [[nodiscard]] std::string outlives() const;
+  /// Goes on as the run that said so, in this scope; before anything else is told. Who stood armed stands armed, nobody
+  /// else does: where the text is not one, or of a run in another scope, nobody has looked at the probe lamps.
+  void take_up(std::string_view outlives);
+
   [[nodiscard]] Scope scope() const { return scope_; }
   [[nodiscard]] bool armed() const { return armed_; }
   /// Whether GO has to be refused now.
@@ -63,6 +71,7 @@ class Readiness {
     std::string text;
     bool lock = false;
     std::string overridden_by;
+    std::string overridden;  ///< this text; another error is another decision
   };
   [[nodiscard]] State state_of(const Fact& fact) const;
   [[nodiscard]] bool locked() const;

@@ -24,6 +24,7 @@ ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const N
   desk.add([&readiness](DeskView& view) {
     view.readiness.scope = to_text(readiness.scope());
     view.readiness.armed = !readiness.refuses_go();
+    view.readiness.outlives = readiness.outlives();
     for (const Readiness::Report& stage : readiness.report()) {
       view.readiness.stages.push_back({stage.name, to_text(stage.state), stage.text});
     }

@@ -17,7 +17,7 @@ namespace footlight::app {
 /// `override`, `swap`. Borrows all.
 class ReadinessSurface final : public Surface {
  public:
-  /// @param board what every node confirms  @param arms by itself as soon as all is done: nobody is at the desk
+  /// @param board what every node confirms  @param arms by itself as soon as all is done, once: nobody is at the desk
   ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board, RunDesk& desk, bool arms);
 
   void look(const DeskView& view, RunDesk& desk) override;

@@ -117,7 +117,13 @@ Result<std::string> Interlocks::by_word(std::string_view name, bool closed) {
   return input_error("gate: no gate \"" + std::string(name) + "\" (there are " + all + ")");
 }
 
+void Interlocks::take_up_emergency_hold() {
+  taken_up_ = true;
+  alarm("EMERGENCY HOLD from before this program was begun again. HOLD changes lamps and stops no machine");
+}
+
 void Interlocks::acknowledge() {
+  taken_up_ = false;
   for (Button& button : buttons_) {
     if (!button.pressed) button.latched = false;
   }
@@ -151,6 +157,7 @@ Bars Interlocks::bars() const {
     if (button.latched) bars |= controller::kEmergencyHold;
     if (button.pressed) bars |= controller::kHoldPressed;
   }
+  if (taken_up_) bars |= controller::kEmergencyHold;
   return bars;
 }
 
@@ -158,6 +165,9 @@ std::vector<std::string> Interlocks::text_of(Bars bars) const {
   std::vector<std::string> texts;
   for (std::size_t g = 0; g < gates_.size(); ++g) {
     if (((bars >> g) & 1U) != 0) texts.push_back(gates_[g].name + ": " + std::string(word_of(state_of(gates_[g]))));
+  }
+  if (taken_up_ && (bars & controller::kEmergencyHold) != 0) {
+    texts.emplace_back("emergency hold from before this program was begun again");
   }
   for (const Button& button : buttons_) {
     if (button.latched && (bars & controller::kEmergencyHold) != 0) {

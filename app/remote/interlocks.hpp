@@ -43,8 +43,12 @@ class Interlocks {
 
   /// The operator answers for a gate, or no more. Errors say which gates there are.
   Result<std::string> by_word(std::string_view gate, bool closed);
+  /// Another program led, and nobody had acknowledged an emergency hold: it stays here, too.
+  void take_up_emergency_hold();
   /// Emergency holds whose buttons are out are over.
   void acknowledge();
+  /// Nobody has acknowledged it yet.
+  [[nodiscard]] bool emergency_hold() const { return (bars() & controller::kEmergencyHold) != 0; }
   /// What has been silent for too long is lost.
   void step(Instant now);
 
@@ -86,6 +90,7 @@ class Interlocks {
   std::vector<Gate> gates_;               ///< of the show
   std::vector<std::size_t> gate_inputs_;  ///< of remote.gates: which of them
   std::vector<Button> buttons_;
+  bool taken_up_ = false;  ///< an emergency hold, and nobody knows whose
   std::vector<News> news_;
 };
 

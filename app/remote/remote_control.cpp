@@ -58,6 +58,8 @@ struct RemoteControl::Parts {
 RemoteControl::RemoteControl(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 RemoteControl::~RemoteControl() = default;
 
+void RemoteControl::take_up_emergency_hold() { parts_->interlocks.take_up_emergency_hold(); }
+
 void RemoteOptions::add_options(CLI::App& command) {
   command.add_option("--remote", file,
                      "YAML file: OSC, MIDI Show Control, buttons, gates, cue lights and tallies (docs/remote.md)");
@@ -99,6 +101,7 @@ Result<std::unique_ptr<RemoteControl>> RemoteControl::open(const RemoteOptions& 
   desk.bar(parts->interlocks.bars(), true);
   desk.add([&interlocks = parts->interlocks](DeskView& view) {
     view.gates = interlocks.gates();
+    view.emergency_hold = interlocks.emergency_hold();
     for (std::string& text : interlocks.text_of(view.show.barred)) view.against.push_back(std::move(text));
   });
   if (!show.gates.empty()) {

@@ -32,6 +32,8 @@ class RemoteControl {
                                                                    const Plan& plan, RunDesk& desk, const Clock& clock,
                                                                    bool listens);
   ~RemoteControl();
+  /// Before the run: nobody has acknowledged an emergency hold under the program that led before.
+  void take_up_emergency_hold();
   RemoteControl(const RemoteControl&) = delete;
   RemoteControl& operator=(const RemoteControl&) = delete;
 

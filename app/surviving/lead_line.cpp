@@ -2,6 +2,7 @@
 #include "app/surviving/lead_line.hpp"
 
 #include <limits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -80,11 +81,11 @@ std::optional<std::uint32_t> take_over_in(std::string_view line) { return epoch(
 
 std::string place_line(const Place& place, Duration now) {
   const auto& where = place.where;
-  Json it{{"position_ns", ns(where.position)},
-          {"waits", where.waits},
-          {"percent", where.percent},
-          {"over", place.over},
-          {"in_reset", place.in_reset}};
+  Json it{{"position_ns", ns(where.position)}, {"waits", where.waits},
+          {"percent", where.percent},          {"over", place.over},
+          {"in_reset", place.in_reset},        {"time_on", place.time.on},
+          {"time_armed", place.time.armed},    {"emergency_hold", place.emergency_hold},
+          {"readiness", place.readiness}};
   if (where.cue) it["cue"] = *where.cue;
   if (where.runs_since) it["runs_ns"] = now.count() - ns(*where.runs_since);
   if (where.hold_at) it["hold_at_ns"] = ns(*where.hold_at);
@@ -105,8 +106,16 @@ std::optional<Place> place_in(std::string_view line, Duration now) {
   const auto waits = truth(it, "waits");
   const auto over = truth(it, "over");
   const auto in_reset = truth(it, "in_reset");
+  const auto time_on = truth(it, "time_on");
+  const auto time_armed = truth(it, "time_armed");
+  const auto emergency_hold = truth(it, "emergency_hold");
+  auto readiness = text(it, "readiness");
   if (!position || !percent || !waits || !over || !in_reset) return std::nullopt;
+  if (!time_on || !time_armed || !emergency_hold || !readiness) return std::nullopt;
   Place place;
+  place.time = {*time_on, *time_armed};
+  place.emergency_hold = *emergency_hold;
+  place.readiness = std::move(*readiness);
   place.at = now;
   place.over = *over;
   place.in_reset = *in_reset;

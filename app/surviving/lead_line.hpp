@@ -13,7 +13,7 @@ namespace footlight::app {
 // What a leading run and its understudy say to each other: lines of JSON over TCP (docs/surviving.md).
 
 /// The longest line that is read.
-inline constexpr std::size_t kLongestLeadLine = 2048;
+inline constexpr std::size_t kLongestLeadLine = 16'384;
 /// The leading run says where the show is this often, while its cue thread lives.
 inline constexpr Duration kLeadEvery = milliseconds(100);
 /// Of such a silence the understudy takes over (T1 of the trust model).

@@ -107,7 +107,7 @@ void LeadPort::look(const DeskView& view, RunDesk& desk) {
   std::string line;
   if (due) {
     said_at_ = at;
-    line = place_line(place_of(view.show, machine_ahead_), now);
+    line = place_line(place_of(view, machine_ahead_), now);
   }
   std::erase_if(clients_, [&](Client& client) {
     return !listen_to(client, now, desk) || (due && client.follows && !say(client.socket, line));

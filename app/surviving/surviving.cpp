@@ -174,7 +174,7 @@ void Surviving::take_up(const CutOff& cut, AfterDeath policy, RunDesk& desk, Liv
     const AfterDeath then = cut.same_start ? policy : AfterDeath::stand;
     const TakeUp up = app::take_up(cut.place, machine, then, desk.orders().plays());
     desk.tell({RunEvent::Kind::note, cut.same_start ? up.told : "the machine was started again since: " + up.told});
-    return by_clock(up.where, now, machine);
+    return by_clock(up.show, now, machine);
   };
 }
 

@@ -32,6 +32,11 @@ std::string_view to_text(TimeAlarm alarm) {
 Chase::Chase(Rehearsal& rehearsal, TimeRules rules)
     : rehearsal_(&rehearsal), rules_(std::move(rules)), follower_(rules_.freewheel) {}
 
+void Chase::take_up(const Word& word) noexcept {
+  view_.on = word.on;
+  view_.armed = word.armed;
+}
+
 void Chase::carry_on(Rehearsal& rehearsal, Instant now) noexcept {
   let_go(now);
   rehearsal_ = &rehearsal;
@@ -80,9 +85,10 @@ Outcome Chase::take(const Command& command, Instant now) noexcept {
     default:
       break;
   }
+  // A hold of what stands holds nothing, but whoever says it wants nothing to begin.
+  if (command.kind == Kind::hold || command.kind == Kind::hold_at_end) view_.armed = false;
   const Outcome outcome = rehearsal_->apply(command, now);
   if (refused(outcome)) return outcome;
-  if (command.kind == Kind::hold || command.kind == Kind::hold_at_end) view_.armed = false;
   if (command.kind == Kind::go) view_.armed = true;
   // By hand: the source leads no more where it has only been lost.
   if (command.kind == Kind::tempo && leads_ && !view_.follows) let_go(now);

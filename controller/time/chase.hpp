@@ -55,7 +55,16 @@ class Chase {
     Duration alarm_off{};               ///< when it was given
   };
 
+  /// What outlives the program: whether the source may lead the show, and begin what stands.
+  struct Word {
+    bool on = true;
+    bool armed = true;
+    friend bool operator==(const Word&, const Word&) = default;
+  };
+
   Chase(Rehearsal& rehearsal, TimeRules rules);
+  /// Before the first step: as it was under another program.
+  void take_up(const Word& word) noexcept;
   /// From now on that of another plan; the show stands.
   void carry_on(Rehearsal& rehearsal, Instant now) noexcept;
 

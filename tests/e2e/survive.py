@@ -5,11 +5,14 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 
 from rehearse import Desk
-from stage import wait_for
+from remote import Surface, free_port, osc
+from stage import SHOW, wait_for
 
+LED = SHOW + 'time: {start: "01:00:00:00"}\n'
 SOAK = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "scripts", "soak")
 
 
@@ -50,7 +53,7 @@ def make_cases(Stage, footlight, program, full):
             row, = self.soak("--understudy", "--kills", "20" if full else "2", "--seed", "3")
             self.assertEqual((row["wrong"], row["misplaced"]), (0, 0), row)
 
-        def understudy(self, make=True):
+        def understudy(self, make=True, lead=(), second=(), answers=()):
             """(lead, understudy's process): the second follows the first."""
             if make:
                 self.make_show()
@@ -58,8 +61,10 @@ def make_cases(Stage, footlight, program, full):
             with socket.socket() as one:
                 one.bind(("127.0.0.1", 0))
                 port = one.getsockname()[1]
-            lead = self.desk("--lead", str(port), "--lead-token", self.path("token"))
-            second = Desk(self, program(), "--count-in", "0", "--state", self.path("second"), "--understudy", f"127.0.0.1:{port}", "--lead-token", self.path("token"))
+            lead = Desk(self, program(), "--count-in", "0", "--lead", str(port), "--lead-token", self.path("token"), *lead)
+            lead.say(*answers)
+            lead.until("roll call", ready=True)
+            second = Desk(self, program(), "--count-in", "0", "--state", self.path("second"), "--understudy", f"127.0.0.1:{port}", "--lead-token", self.path("token"), *second)
             wait_for(lambda: "an understudy follows" in self.notes(lead), "the understudy", 60)
             return lead, second, port
 
@@ -171,6 +176,162 @@ def make_cases(Stage, footlight, program, full):
             self.assertEqual((third.state["phase"], third.state["cue"]), ("stands", "2"))
             third.say("go")
             third.until("the end", phase="finished")
+
+        def lives_on(self, *options):
+            """Kills the run that there is, and takes it up."""
+            self.led.process.kill()
+            self.led.process.wait()
+            self.led = self.desk("--resume", *options)
+            return self.led
+
+        def refused(self, desk, order, why):
+            time.sleep(0.3)
+            desk.say(order)
+            wait_for(lambda: any(why in text for text in desk.answers()), why)
+
+        def live(self, *answers):
+            self.make_show()
+            self.serve()
+            self.led = Desk(self, program(), "--count-in", "0", "--scope", "live")
+            self.led.say(*answers)
+            self.led.until("roll call", ready=True)
+            return self.led
+
+        def stages(self, desk):
+            return {s["name"]: s["state"] for s in desk.state["readiness"]["stages"]}
+
+        def test_a_floor_that_is_wrong_stays_unarmed_through_a_death_and_its_lamps_are_right(self):
+            desk = self.live("yes", "no")
+            self.refused(desk, "go", "probes: ")
+            desk = self.lives_on("--scope", "live")
+            self.assertEqual(self.stages(desk)["probes"], "ERROR")
+            self.assertFalse(desk.state["readiness"]["armed"])
+            self.refused(desk, "go", "the show is not ready: probes: ")
+            self.assertEqual((desk.state["phase"], desk.state["position_s"]), ("stands", 0.0))
+            wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in desk.state["buses"]), "all nodes right")
+            desk.say("override probes")
+            wait_for(lambda: self.stages(desk)["probes"] == "WARNING", "the override")
+            time.sleep(0.2)
+            desk = self.lives_on("--scope", "live")
+            self.assertEqual(self.stages(desk)["probes"], "WARNING", "the override is remembered")
+            self.refused(desk, "go", "nobody has said arm")
+            desk.say("arm")
+            wait_for(lambda: desk.state["readiness"]["armed"], "arm")
+
+        def test_who_was_armed_is_armed_after_a_death_and_who_was_disarmed_is_not(self):
+            desk = self.live("yes", "yes", "yes")
+            desk.say("arm")
+            wait_for(lambda: desk.state["readiness"]["armed"], "arm")
+            time.sleep(0.2)
+            desk = self.lives_on("--scope", "live")
+            self.assertTrue(desk.state["readiness"]["armed"])
+            self.assertEqual(self.stages(desk)["probes"], "SUCCESS")
+            desk.say("disarm")
+            wait_for(lambda: not desk.state["readiness"]["armed"], "disarm")
+            time.sleep(0.2)
+            desk = self.lives_on("--scope", "live")
+            self.refused(desk, "go", "nobody has said arm")
+            self.assertEqual(self.stages(desk)["probes"], "SUCCESS")
+
+        def test_an_understudy_is_armed_when_its_lead_was_and_only_then(self):
+            for armed in (False, True):
+                lead, second, _ = self.understudy(make=not armed, lead=("--scope", "live"), second=("--scope", "live"), answers=("yes", "yes", "yes"))
+                if armed:
+                    lead.say("arm")
+                wait_for(lambda: lead.state["readiness"]["armed"] == armed, "arm")
+                time.sleep(0.3)
+                lead.process.kill()
+                second.until("it leads", ready=True)
+                self.assertEqual(second.state["readiness"]["armed"], armed)
+                self.assertEqual(self.stages(second)["probes"], "SUCCESS")
+                second.end()
+                lead.end()
+                self.sim.kill()
+                self.sim.wait()
+
+        def tape(self, port, begins_at_s):
+            """A source of time by OSC that says it is at `begins_at_s` of the show now, and goes on."""
+            over, began = threading.Event(), time.monotonic()
+
+            def play():
+                with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+                    while not over.wait(0.04):
+                        out.sendto(osc("/footlight/time", 3600 + begins_at_s + time.monotonic() - began), ("127.0.0.1", port))
+
+            playing = threading.Thread(target=play)
+            playing.start()
+
+            def stop():
+                over.set()
+                playing.join()
+
+            self.addCleanup(stop)
+            return stop
+
+        def test_what_was_taken_off_the_tape_stays_off_it_through_a_death(self):
+            self.make_show(show=LED)
+            self.serve()
+            port = free_port()
+            follows = ("--time", f"osc:{port}")
+            self.led = desk = self.desk(*follows)
+            stop = self.tape(port, -1000)
+            wait_for(lambda: desk.state["time"]["lock"] == "locked", "the tape")
+            desk.say("time off")
+            wait_for(lambda: not desk.state["time"]["on"], "time off")
+            stop()
+            time.sleep(0.2)
+            desk = self.lives_on(*follows)
+            stop = self.tape(port, -2)
+            wait_for(lambda: desk.state["time"]["lock"] == "locked" and desk.state["time"]["position_s"] > 1, "the tape has passed the top")
+            self.assertEqual((desk.state["phase"], desk.state["position_s"], desk.state["time"]["on"]), ("stands", 0.0, False))
+            desk.say("time on")
+            stop()
+            time.sleep(0.3)
+            self.tape(port, -2)
+            desk.until("it begins with the tape", phase="runs")
+
+        def test_a_hold_at_the_end_of_the_set_stays_one_for_the_tape_under_the_understudy(self):
+            self.make_show(show=LED)
+            port, other = free_port(), free_port()
+            lead, second, _ = self.understudy(False, lead=("--time", f"osc:{port}"), second=("--time", f"osc:{other}"))
+            stop = self.tape(port, -2)
+            lead.until("with the tape", phase="runs", cue="2")
+            lead.say("hold end")
+            lead.until("where everybody stands", phase="stands")
+            held_s = lead.state["position_s"]
+            stop()
+            time.sleep(0.3)
+            lead.process.kill()
+            second.until("it leads", ready=True)
+            self.assertEqual((second.state["phase"], second.state["position_s"]), ("stands", held_s))
+            self.tape(other, held_s - 2)
+            wait_for(lambda: second.state["time"]["lock"] == "locked" and second.state["time"]["position_s"] > held_s + 1, "the tape has passed that place")
+            self.assertEqual((second.state["phase"], second.state["position_s"]), ("stands", held_s))
+            self.assertEqual((second.state["time"]["on"], second.state["time"]["armed"]), (True, False))
+
+        def test_an_emergency_hold_that_nobody_acknowledged_is_one_in_the_next_life(self):
+            self.make_show()
+            self.serve()
+            port = free_port()
+            with open(self.path("remote.yaml"), "w") as f:
+                f.write(f"remote: 1\nosc: {{port: {port}}}\nbuttons: [{{name: red, does: emergency-hold, osc: true}}]\n")
+            remote = ("--remote", self.path("remote.yaml"))
+            self.led = desk = self.desk(*remote)
+            surface = Surface(self, port)
+            surface.send("/footlight/button", "red", 1)
+            wait_for(lambda: any("EMERGENCY HOLD by button red" in line.get("alarm", "") for line in list(desk.lines)), "the alarm")
+            surface.send("/footlight/button", "red", 0)
+            time.sleep(0.3)
+            desk = self.lives_on(*remote)
+            wait_for(lambda: any("EMERGENCY HOLD from before" in line.get("alarm", "") for line in list(desk.lines)), "the alarm")
+            self.refused(desk, "go", "emergency hold: when people are safe and the button is out, acknowledge it (ok): emergency hold from before this program was begun again")
+            time.sleep(0.3)
+            desk.say("ok")
+            time.sleep(0.3)
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            self.lives_on(*remote)
+            self.assertFalse(any("EMERGENCY" in line.get("alarm", "") for line in list(self.led.lines)), "it was acknowledged")
 
         def test_another_plan_is_not_taken_up(self):
             self.make_show()

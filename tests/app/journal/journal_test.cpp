@@ -157,6 +157,9 @@ TEST_F(JournalTest, EverythingOfAPlaceIsReadAsItWasWritten) {
   place.at = seconds(100);
   place.over = true;
   place.in_reset = true;
+  place.time = {false, true};
+  place.emergency_hold = true;
+  place.readiness = R"({"armed": true})";
   {
     auto file = JournalFile::open(path_);
     ASSERT_TRUE(file) << file.error().message;
@@ -178,6 +181,31 @@ TEST_F(JournalTest, EverythingOfAPlaceIsReadAsItWasWritten) {
   EXPECT_EQ(again->at, place.at);
   EXPECT_TRUE(again->over);
   EXPECT_TRUE(again->in_reset);
+  EXPECT_EQ(again->time, place.time);
+  EXPECT_TRUE(again->emergency_hold);
+  EXPECT_EQ(again->readiness, place.readiness);
+}
+
+TEST_F(JournalTest, WhatIsSaidOfTimeAHoldOrReadinessIsAPlaceOfItsOwnThoughNothingMoves) {
+  const auto last = [&] {
+    const auto reading = read_journal(path_);  // its own thread may be making it
+    return reading ? reading->last_place.value_or(Place{}) : Place{};
+  };
+  Journal journal(path_, run(), small_.rig, nullptr);
+  DeskView now = view(4, false);
+  journal.look(now, desk_);
+  const auto seen = [&](const auto& there) {
+    journal.look(now, desk_);
+    wait_for([&] { return there(last()); });
+  };
+  now.show.time.armed = false;
+  seen([](const Place& place) { return place.time.on && !place.time.armed; });
+  now.show.time.on = false;
+  seen([](const Place& place) { return !place.time.on; });
+  now.emergency_hold = true;
+  seen([](const Place& place) { return place.emergency_hold; });
+  now.readiness.outlives = "armed";
+  seen([](const Place& place) { return place.readiness == "armed"; });
 }
 
 TEST_F(JournalTest, ADiskThatTakesNothingIsAnAlarmAndTheShowGoesOn) {

@@ -53,6 +53,24 @@ TEST_F(InterlocksTest, NobodyKnowsHowAGateIsUntilItsInputSaysSo) {
   EXPECT_THAT(news(), ElementsAre("trap: closed", "lift: closed"));
 }
 
+TEST_F(InterlocksTest, AnEmergencyHoldFromBeforeStaysUntilItIsAcknowledgedWithEveryButtonOut) {
+  EXPECT_FALSE(locks_.emergency_hold());
+  locks_.take_up_emergency_hold();
+  EXPECT_TRUE(locks_.emergency_hold());
+  EXPECT_EQ(locks_.bars(), 7U | kEmergencyHold);
+  EXPECT_THAT(locks_.text_of(kEmergencyHold), ElementsAre("emergency hold from before this program was begun again"));
+  EXPECT_THAT(news(),
+              ElementsAre("ALARM EMERGENCY HOLD from before this program was begun again. HOLD changes lamps and "
+                          "stops no machine"));
+  locks_.tell_button(2, true, instant_at(1));  // it is still in
+  locks_.acknowledge();
+  EXPECT_THAT(locks_.text_of(kEmergencyHold), ElementsAre("emergency hold by button red, which is still in"));
+  locks_.tell_button(2, false, instant_at(2));
+  EXPECT_TRUE(locks_.emergency_hold());
+  locks_.acknowledge();
+  EXPECT_FALSE(locks_.emergency_hold());
+}
+
 TEST_F(InterlocksTest, OnlyWhatIsToldByOscCanBeToldByOsc) {
   EXPECT_FALSE(locks_.tell_gate("trap", true, instant_at(1)));
   EXPECT_FALSE(locks_.tell_gate("door", true, instant_at(1)));

@@ -33,6 +33,9 @@ Place running() {
   place.where.step_to = instant_at(7);
   place.where.loop = {instant_at(1), instant_at(9)};
   place.at = seconds(100);
+  place.time = {true, false};
+  place.emergency_hold = true;
+  place.readiness = R"({"scope":"live","armed":true})";
   return place;
 }
 
@@ -51,6 +54,16 @@ TEST(LeadLine, APlaceIsHeardAsItWasSaidByAnotherClock) {
   EXPECT_EQ(heard->where.step_to, instant_at(7));
   EXPECT_EQ(heard->where.loop->from, instant_at(1));
   EXPECT_EQ(heard->where.loop->to, instant_at(9));
+  EXPECT_EQ(heard->time, running().time);
+  EXPECT_TRUE(heard->emergency_hold);
+  EXPECT_EQ(heard->readiness, running().readiness);
+}
+
+TEST(LeadLine, TheLongestWordOfReadinessFits) {
+  Place place = running();
+  place.readiness = std::string(8192 / 2, '"') + std::string(8192 / 2, 'x');
+  ASSERT_LE(place_line(place, {}).size(), kLongestLeadLine);
+  EXPECT_EQ(place_in(place_line(place, {}), {})->readiness, place.readiness);
 }
 
 TEST(LeadLine, WhatIsNoLineIsNoneAndNothingElseHappens) {

@@ -102,6 +102,27 @@ TEST(Chase, WhatTheOperatorHoldsTheSourceDoesNotBegin) {
   EXPECT_EQ(bench.phase(), Phase::counts_in) << "four counts";
 }
 
+TEST(Chase, WhatWasHeldUnderAnotherProgramTheSourceDoesNotBeginEither) {
+  for (const Chase::Word word : {Chase::Word{true, false}, {false, true}}) {
+    Bench bench;
+    bench.chase->take_up(word);
+    bench.play_into(5);
+    EXPECT_EQ(bench.phase(), Phase::stands);
+    EXPECT_EQ(bench.position_s(), 0);
+    EXPECT_EQ(bench.say(Kind::follow), Outcome::done);
+    bench.play_into(5);
+    EXPECT_TRUE(bench.chase->view().follows);
+  }
+}
+
+TEST(Chase, HoldCountsForWhatStandsToo) {
+  Bench bench;
+  bench.play_into(-3.5);
+  EXPECT_EQ(bench.say(Kind::hold), Outcome::nothing_runs);
+  bench.play_into(5);
+  EXPECT_EQ(bench.phase(), Phase::stands) << "nobody has said GO since";
+}
+
 TEST(Chase, AfterAHoldAtTheEndOfTheSetFollowLetsTheSourceGoOn) {
   Bench bench;
   bench.play_into(3);
