@@ -19,6 +19,20 @@ std::optional<Outcome> refusal(Bars bars) {
   return std::nullopt;
 }
 
+std::optional<Outcome> refusal(GoGuard::Verdict verdict) {
+  switch (verdict) {
+    case GoGuard::Verdict::too_soon:
+      return Outcome::too_soon;
+    case GoGuard::Verdict::held:
+      return Outcome::key_held;
+    case GoGuard::Verdict::switched_off:
+      return Outcome::switched_off;
+    case GoGuard::Verdict::taken:
+      break;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
@@ -27,6 +41,10 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
     switch (command.kind) {
       case Command::Kind::go:
         return go(command, now);
+      case Command::Kind::step:
+        // A GO for one count: people walk by it, so nothing of a GO is left out.
+        if (const auto pressed = refusal(guard_.press(command.source, command.input, now))) return *pressed;
+        return step_count(now);
       case Command::Kind::hold:
         return hold(now);
       case Command::Kind::hold_at_end:
@@ -46,8 +64,6 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
       case Command::Kind::tempo:
         engine_.set_tempo(now, command.percent);
         return Outcome::done;
-      case Command::Kind::step:
-        return step_count(now);
       case Command::Kind::reset_planned:
       case Command::Kind::reset_impossible:
         return answer_reset(command);
@@ -75,16 +91,7 @@ Outcome Rehearsal::apply(const Command& command, Instant now) noexcept {
 }
 
 Outcome Rehearsal::go(const Command& command, Instant now) noexcept {
-  switch (guard_.press(command.source, command.input, now)) {
-    case GoGuard::Verdict::too_soon:
-      return Outcome::too_soon;
-    case GoGuard::Verdict::held:
-      return Outcome::key_held;
-    case GoGuard::Verdict::switched_off:
-      return Outcome::switched_off;
-    case GoGuard::Verdict::taken:
-      break;
-  }
+  if (const auto pressed = refusal(guard_.press(command.source, command.input, now))) return *pressed;
   const bool moves = runs() || (resets() && !move_held_);
   if (const auto against = refusal(barred()); against && !moves) return *against;
   return go_on(now);
@@ -169,13 +176,7 @@ Outcome Rehearsal::step_count(Instant now) noexcept {
   double count = std::floor(tempo_.count_at(here)) + 1;
   while (tempo_.at(count) <= here) ++count;
   count_ = tempo_.at(count);
-  if (!engine_.frozen()) {
-    (void)engine_.go(now);
-  } else {
-    const BusTarget next = target();
-    engine_.resume(now, now + notice_(next.current, next.next));
-  }
-  return Outcome::done;
+  return go_on(now);
 }
 
 // ---- other places

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """House rules that a compiler does not see: the dependency rule between folders, sources that no target builds, files without a licence
-line, clocks read outside of core/clock.cpp, libraries used outside of their one place, tests that docs/faults.md and docs/console.md name and that are not there. One line for each finding; exit status 1 if any."""
+line, clocks read outside of core/clock.cpp, libraries used outside of their one place, tests that docs/faults.md and docs/console.md name and that are not there,
+keys that mean one thing here and another there. One line for each finding; exit status 1 if any."""
 import os
 import re
 import subprocess
@@ -62,6 +63,29 @@ def faults_without_test():
             if name not in names and not (name.endswith("*") and (any(n.startswith(name[:-1]) for n in names) or name[:-2] in suites))]
 
 
+def keys_that_differ():
+    """A letter means the same in the terminal, on the console's page and in the table of docs/live.md."""
+    def text(path):
+        with open(os.path.join(ROOT, path)) as f:
+            return f.read()
+
+    terminal, page, table = {}, {}, {}
+    for letters, block in re.findall(r"((?:    case '[^'\\\\]':\n)+)((?:      .*\n)+)", text("app/surfaces/prompt_desk.cpp")):
+        order = re.search(r'"(\w+)', block)
+        for letter in re.findall(r"'(.)'", letters) if order else []:
+            terminal[letter.lower()] = order[1]
+    keys = text("app/console/web/src/keys.ts")
+    page.update(re.findall(r'"?(\w|\.)"?: "(\w+)"', re.search(r"kOrders.*?= \{(.*?)\}", keys)[1]))
+    page.update(re.findall(r'case "(\w)":\n\s*return once\(\(\) => desk\.(?:ask\(")?([a-z]+)', keys))
+    for letters, orders in re.findall(r"^\| ([a-z.](?:, [a-z.])*) \| (`[^|]*) \|", text("docs/live.md"), re.M):
+        for letter, order in zip(letters.split(", "), re.findall(r"`(\w+)", orders)):
+            table[letter] = order
+    said = {"hold": {"hold", "run"}}  # e: "hold end" and "run on"
+    return [f"docs/live.md: {letter} is {name} \"{other}\", not \"{table[letter]}\"" for letter in sorted(table)
+            for name, other in (("in the terminal", terminal.get(letter)), ("on the page", page.get(letter)))
+            if other not in said.get(table[letter], {table[letter]}) and (other or name == "in the terminal")]
+
+
 def main():
     findings = []
     product = [f for d in FOLDERS for f in tracked(f"{d}/*.cpp", f"{d}/*.hpp")]
@@ -89,7 +113,7 @@ def main():
             if folder in MAY_INCLUDE and path not in ("core/clock.cpp", "core/clock.hpp") and \
                     re.search(r"(steady_clock|system_clock|high_resolution_clock)::now|clock_gettime|gettimeofday", line):
                 findings.append(f"{path}:{number}: the time is read from a core/clock.hpp Clock")
-    findings += faults_without_test()
+    findings += faults_without_test() + keys_that_differ()
     for finding in findings:
         print(finding)
     return 1 if findings else 0

@@ -22,8 +22,8 @@ constexpr char kDown = 18;
 
 constexpr std::string_view kKeys =
     "Space GO   h HOLD (freeze)   e HOLD at the end of the set (again: run on)   b back   t top   j jump   l loop\n"
-    "+ - . tempo, tapped   n one count   p people are placed   c cancel the jump   up down standby   s solo   m mute\n"
-    "N note   a acknowledge   q q quit   ? this\n"
+    "+ - . tempo, tapped   s one count   p people are placed   c cancel the jump   up down standby   o solo   m mute\n"
+    "n note   a acknowledge   q q quit   ? this\n"
     "HOLD is no emergency stop: it changes lamps, and people have to see them. Somebody must watch the stage.\n";
 
 }  // namespace
@@ -104,19 +104,20 @@ void PromptDesk::take_key(char key) {
       return change_tempo(kTempoStep_percent);
     case '-':
       return change_tempo(-kTempoStep_percent);
+    case 'n':
     case 'N':
       return ask("note ");
     case '.':
       return take_line("tap");
     case 'm':
       return seen_.muted.empty() ? ask("mute ") : take_line("unmute");
-    case 's':
+    case 'o':
       return seen_.muted.empty() ? ask("solo ") : take_line("solo off");
     case kUp:
       return take_line("standby up");
     case kDown:
       return take_line("standby down");
-    case 'n':
+    case 's':
       return take_line("step");
     case 'p':
       return take_line("placed");

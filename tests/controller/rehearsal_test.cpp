@@ -449,10 +449,46 @@ TEST(Rehearsal, TheTempoIsHeldAtTheLimitOfTheCue) {
 TEST(Rehearsal, StepsCountByCount) {
   Bench bench;
   for (int count = 1; count <= 7; ++count) {
-    EXPECT_EQ(bench.tell(Kind::step), Outcome::done) << count;
+    EXPECT_EQ(bench.tell(Kind::step), count == 1 ? Outcome::cue_started : Outcome::goes_on) << count;
     bench.run_for(10);
     EXPECT_EQ(bench.position(), instant_at(0.5 * count)) << count;
   }
+}
+
+TEST(Rehearsal, AStepIsCountedInAsAGoIs) {
+  Bench bench({}, 4);
+  for (const double begins_at_s : {0.0, 0.5}) {
+    EXPECT_FALSE(refused(bench.tell(Kind::step)));
+    EXPECT_EQ(bench.rehearsal->phase(), Phase::counts_in);
+    EXPECT_EQ(bench.rehearsal->goes_at() - bench.clock.now(), seconds(2)) << "four counts";
+    bench.run_for(1.999);
+    EXPECT_EQ(bench.position(), instant_at(begins_at_s));
+    bench.run_for(0.25);
+    EXPECT_GT(bench.position(), instant_at(begins_at_s));
+    bench.run_for(5);
+    EXPECT_EQ(bench.position(), instant_at(begins_at_s + 0.5));
+  }
+}
+
+TEST(Rehearsal, AStepAndAGoPassOneGuard) {
+  Bench bench;
+  EXPECT_EQ(bench.tell(Kind::step), Outcome::cue_started);
+  bench.run_for(0.75);
+  ASSERT_EQ(bench.rehearsal->phase(), Phase::stands);
+  EXPECT_EQ(bench.tell(Kind::step), Outcome::too_soon) << "one press that bounces";
+  EXPECT_EQ(bench.tell(Kind::go), Outcome::too_soon);
+  bench.run_for(0.25);
+  EXPECT_EQ(bench.tell(Kind::go), Outcome::goes_on);
+  Bench keys;
+  Command held;
+  held.kind = Kind::step;
+  held.source = GoSource::keyboard;
+  EXPECT_EQ(keys.rehearsal->apply(held, keys.clock.now()), Outcome::cue_started);
+  for (int repeats = 0; repeats < 40; ++repeats) {
+    keys.run_for(0.1);
+    EXPECT_EQ(keys.rehearsal->apply(held, keys.clock.now()), Outcome::key_held);
+  }
+  EXPECT_EQ(keys.position(), instant_at(0.5)) << "a key that is held is one step";
 }
 
 TEST(Rehearsal, ARefusedGoChangesNothing) {
@@ -489,6 +525,7 @@ TEST(Rehearsal, GoIsRefusedWhileAGateOfTheCueIsOpen) {
   ASSERT_EQ(bench.position(), instant_at(4));
   EXPECT_EQ(bench.rehearsal->barred(), 1U);
   EXPECT_EQ(bench.go(), Outcome::gate_open);
+  bench.run_for(1);
   EXPECT_EQ(bench.tell(Kind::step), Outcome::gate_open);
   bench.rehearsal->set_bars(2, bench.clock.now());
   bench.run_for(10);

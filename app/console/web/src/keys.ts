@@ -9,6 +9,8 @@ export interface Desk {
   say(order: string): void;
   ask(prefix: string): void;
   loop(): void;
+  mute(): void;
+  solo(): void;
   tempo(by_percent: number): void;
   move(by: number): void;
   jump(): boolean;
@@ -42,7 +44,8 @@ export class Presses {
   }
 }
 
-const kOrders: Record<string, string> = { b: "back", t: "top", s: "step", c: "cancel" };
+// The letters are those of the terminal: docs/live.md has the table.
+const kOrders: Record<string, string> = { b: "back", t: "top", s: "step", c: "cancel", ".": "tap" };
 
 export function listen_to_keys(desk: Desk): void {
   const presses = new Presses();
@@ -91,6 +94,10 @@ function act(desk: Desk, key: string, fresh: boolean): boolean {
       return once(() => desk.hold_end());
     case "l":
       return once(() => desk.loop());
+    case "m":
+      return once(() => desk.mute());
+    case "o":
+      return once(() => desk.solo());
     case "j":
       return once(() => desk.ask("jump "));
     case "n":

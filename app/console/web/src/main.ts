@@ -20,8 +20,8 @@ import { Timeline } from "./timeline";
 import { type Language, say, set_language, translate, type Word } from "./words";
 
 const kThemes = ["dark", "light", "contrast"];
-const kKeys: [string, Word][] = [["Space", "key_go"], ["Esc", "key_hold"], ["E", "key_end"], ["B  T", "key_back"], ["S", "key_step"], ["↑ ↓  Enter", "key_choose"],
-  ["J  L  N  :", "key_ask"], ["+ −", "key_tempo"], ["P  C", "key_reset"], ["A", "key_ok"], ["V  1 2 3 4  0", "key_view"], ["/", "key_find"], ["", "key_pan"]];
+const kKeys: [string, Word][] = [["Space", "key_go"], ["Esc", "key_hold"], ["E", "key_end"], ["B  T", "key_back"], ["S", "key_step"], ["O  M", "key_mute"], ["↑ ↓  Enter", "key_choose"],
+  ["J  L  N  :", "key_ask"], ["+ −  .", "key_tempo"], ["P  C", "key_reset"], ["A", "key_ok"], ["V  1 2 3 4  0", "key_view"], ["/", "key_find"], ["", "key_pan"]];
 
 /** What is kept over a reload; a browser that keeps nothing is as good. */
 function kept(name: string, value?: string): string | undefined {
@@ -220,6 +220,8 @@ class Console {
       say: (order) => this.orders_.say(order),
       ask: (prefix) => this.orders_.ask(prefix),
       loop: () => this.orders_.named("loop"),
+      mute: () => this.orders_.named("mute"),
+      solo: () => this.orders_.named("solo"),
       tempo: (by) => this.orders_.tempo(by),
       move: (by) => this.cues_.move(by),
       jump: () => this.cues_.jump(),

@@ -48,6 +48,8 @@ export class Orders {
     if (order === "hold_end") this.say(state?.holds_at_end ? "run on" : "hold end");
     else if (order === "loop" && state?.loop) this.say("loop off");
     else if (order === "loop") this.ask("loop ");
+    else if ((order === "mute" || order === "solo") && state?.muted) this.say("unmute");
+    else if (order === "mute" || order === "solo") this.ask(`${order} `);
     else if (order === "faster" || order === "slower") this.tempo(order === "faster" ? kTempoStep_percent : -kTempoStep_percent);
     else this.say(order);
   }

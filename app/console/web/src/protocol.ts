@@ -60,6 +60,8 @@ export interface State {
   tempo_percent: number;
   most_percent: number;
   holds_at_end: boolean;
+  /** Groups; empty: nobody. */
+  muted: string;
   loop: { from_s: number; to_s: number } | null;
   reset: { state: string; from_s?: number; to_s?: number; at_s?: number };
   against?: unknown; // who bars people from walking
