@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "app/surfaces/show_timecode.hpp"
+
 namespace footlight::app {
 
 using controller::Command;
@@ -20,7 +22,7 @@ const std::string_view kOrders =
     "hold, hold freeze            the show stands at once, in the middle of a walk if need be\n"
     "hold end; run on             it will stand where everybody next stands; takes that back\n"
     "back; top                    to the beginning of this cue, or of the one before; of the show\n"
-    "jump cue 12                  also: jump section ring, jump count 17.5, jump time 1:23.5\n"
+    "jump cue 12                  also: jump section ring, jump count 17.5, jump time 1:23.5 or 01:00:12:05\n"
     "loop section ring; loop off  also: loop cue 12, loop counts 17 33\n"
     "tempo 80                     25 to 200 % of the written tempo, as far as the cue's walks are proved for\n"
     "step                         one count, and stands\n"
@@ -63,6 +65,17 @@ std::optional<double> time_in(std::string_view text) {
     text.remove_prefix(colon + 1);
   }
   return std::nullopt;
+}
+
+/// "01:00:12:05", "01:00:12;05": with frames, as no time in seconds is written.
+bool names_frames(std::string_view text) {
+  return std::ranges::count(text, ':') == 3 || text.find_first_of(";,") != std::string_view::npos;
+}
+
+/// "a timecode from 01:00:00:00 to 01:08:12:00 (25 frames a second)"
+std::string codes_of(const TimeRules& rules, Instant from, Instant to) {
+  const auto code = [&](Instant at) { return timecode_text(rules.start + at.time_since_epoch(), rules.rate); };
+  return fmt::format("a timecode from {} to {} ({} frames a second)", code(from), code(to), to_text(rules.rate));
 }
 
 std::string rest_of(const std::vector<std::string>& words, std::size_t first) {
@@ -136,6 +149,18 @@ Result<Order> Orders::from(std::string_view line) const {
   return input_error(fmt::format("\"{}\" is no order (\"help\" lists them)", text));
 }
 
+/// The end of the frame: where people stand at any instant of it they stand there then.
+std::optional<Instant> Orders::position_of(std::string_view timecode) const {
+  const auto code = parse_timecode(timecode, show_.time.rate);
+  if (!code) return std::nullopt;
+  const Instant from = plays_.front().from;
+  const Instant to = plays_.back().to;
+  const Duration frame = frame_time(show_.time.rate);
+  const Instant at(in_show(time_of(*code), show_.time));
+  if (at > to || at + frame <= from) return std::nullopt;
+  return std::clamp(at + frame - Duration(1), from, to);
+}
+
 Result<Orders::Stretch> Orders::stretch(std::string_view verb, const std::vector<std::string>& words) const {
   const std::string what = words.size() > 1 ? words[1] : "";
   const std::string which = rest_of(words, 2);
@@ -173,6 +198,12 @@ Result<Orders::Stretch> Orders::stretch(std::string_view verb, const std::vector
     if (count && on_the_show(show_.tempo.at(*count))) return Stretch{show_.tempo.at(*count), show.to};
     return input_error(fmt::format("jump: a count from {:.6g} to {:.6g} is wanted", show_.tempo.count_at(show.from),
                                    show_.tempo.count_at(show.to)));
+  }
+  if (verb == "jump" && what == "time" && names_frames(which)) {
+    const auto position = position_of(which);
+    if (position) return Stretch{*position, show.to};
+    return input_error(fmt::format("jump: {} is wanted, or a time as in \"jump time 1:23.5\"",
+                                   codes_of(show_.time, show.from, show.to)));
   }
   if (verb == "jump" && what == "time") {
     const auto time_s = time_in(which);

@@ -36,6 +36,8 @@ class Orders {
     Instant to;
   };
   [[nodiscard]] Result<Stretch> stretch(std::string_view verb, const std::vector<std::string>& words) const;
+  /// Of a timecode of the show's source; nothing: it is none of its rate, or not on the show.
+  [[nodiscard]] std::optional<Instant> position_of(std::string_view timecode) const;
 
   const Show& show_;
   const Plan& plan_;

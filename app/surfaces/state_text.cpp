@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/surfaces/show_timecode.hpp"
+
 namespace footlight::app {
 namespace {
 
@@ -28,14 +30,6 @@ std::string_view to_text(ResetState state) {
       return "impossible";
   }
   return "";
-}
-
-/// Before 00:00:00:00 the codes of the day before.
-std::string to_text_of(Duration since_zero, FrameRate rate) {
-  constexpr Duration kDay = std::chrono::hours(24);
-  Duration time = since_zero % kDay;
-  if (time < Duration{}) time += kDay;
-  return to_text(code_at(time, rate));
 }
 
 std::string_view to_text(GateView::State state) {
@@ -191,7 +185,7 @@ Json StateText::time_of(const DeskView& view) const {
 }
 
 std::string StateText::timecode_at(Instant position) const {
-  return to_text_of(position.time_since_epoch() + show_.time.start, show_.time.rate);
+  return timecode_text(position.time_since_epoch() + show_.time.start, show_.time.rate);
 }
 
 /// "ltc tape.wav 01:00:12:04 locked, follows"; empty: the machine's own clock.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/surfaces/show_timecode.hpp"
 #include "app/time/sound_input.hpp"
 #include "app/time/time_source.hpp"
 #include "controller/time/ltc.hpp"

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/midi/midi_input.hpp"
+#include "app/surfaces/show_timecode.hpp"
 #include "app/time/time_source.hpp"
 #include "controller/time/midi_clock.hpp"
 #include "controller/time/mtc.hpp"

@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 
 #include "app/remote/osc_packet.hpp"
+#include "app/surfaces/show_timecode.hpp"
 #include "app/time/time_out.hpp"
 #include "app/time/time_source.hpp"
 #include "core/file_descriptor.hpp"

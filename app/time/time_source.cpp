@@ -10,18 +10,6 @@ namespace footlight::app {
 const char* const kTimeSources =
     "internal, audio:FILE, ltc:FILE, ltc:alsa:DEVICE, mtc:PORT, midi-clock:PORT, osc:PORT or osc:ADDRESS:PORT";
 
-std::string timecode_text(Duration time, FrameRate rate) {
-  const Duration day = time_of({23, 59, 59, frames_counted(rate) - 1, rate}) + frame_time(rate);
-  time %= day;
-  return to_text(code_at(time < Duration{} ? time + day : time, rate));
-}
-
-Duration in_show(Duration position, const TimeRules& rules) {
-  const Duration day = time_of({23, 59, 59, frames_counted(rules.rate) - 1, rules.rate}) + frame_time(rules.rate);
-  const Duration out = position - rules.start;
-  return out > day / 2 ? out - day : out < -day / 2 ? out + day : out;
-}
-
 Result<std::unique_ptr<TimeSource>> open_time_source(const std::string& name, const std::filesystem::path& folder,
                                                      const Show& show, const Clock& clock) {
   const std::size_t colon = name.find(':');

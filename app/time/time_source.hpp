@@ -48,12 +48,6 @@ class TimeSource {
 /// For people: every kind of name.
 extern const char* const kTimeSources;
 
-/// The show's time of a position of the source. A pre-roll before 00:00:00:00 comes from the day before.
-[[nodiscard]] Duration in_show(Duration position, const TimeRules& rules);
-
-/// Before 00:00:00:00 the codes of the day before.
-[[nodiscard]] std::string timecode_text(Duration time, FrameRate rate);
-
 // Each kind.
 [[nodiscard]] Result<std::unique_ptr<TimeSource>> open_audio(const std::string& what,
                                                              const std::filesystem::path& folder,

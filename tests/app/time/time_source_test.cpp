@@ -12,6 +12,7 @@
 
 #include "app/live/cue_thread.hpp"
 #include "app/remote/osc_packet.hpp"
+#include "app/surfaces/show_timecode.hpp"
 #include "tests/controller/time/led_show.hpp"
 #include "tests/controller/time/tape.hpp"
 #include "tests/support/temporary_folder.hpp"
