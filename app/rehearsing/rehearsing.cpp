@@ -28,7 +28,7 @@ Rehearsing::Rehearsing(const Show& show, const Plan& plan, RunDesk& desk, const 
       pace_(show_, clock_) {
   log_.open();
   desk.add([this](DeskView& view) {
-    view.freeze = freeze_.look(view.show.position, view.show.percent);
+    view.freeze = freeze_.look(view);
     view.limits = limits_.empty() ? nullptr : &limits_;
   });
   desk.add(*this);

@@ -128,11 +128,13 @@ std::string StateText::freeze(const DeskView& view) const {
   const auto pairs = [](std::uint32_t count) {
     return fmt::format("{} pair{} may touch", count, count == 1 ? "" : "s");
   };
-  if (state.phase == Phase::stands && state.active >= 0 && freeze.resume_pairs > 0) {
+  const bool held = (state.phase == Phase::stands && state.active >= 0) || state.phase == Phase::reset_held;
+  if (held && freeze.resume_pairs > 0) {
     return " | going on: " + pairs(freeze.resume_pairs) + " where people have walked on";
   }
-  if (state.phase != Phase::runs) return "";
+  if (state.phase != Phase::runs && state.phase != Phase::resets) return "";
   if (freeze.pairs == 0) return " | freeze safe";
+  if (state.phase == Phase::resets) return " | freeze: " + pairs(freeze.pairs);  // a reset move has no set to end
   if (freeze.none_from == kNever) return " | freeze: " + pairs(freeze.pairs) + "; HOLD at the end is better";
   return fmt::format(" | freeze: {} until count {:.0f}; HOLD at the end is better", pairs(freeze.pairs),
                      std::ceil(show_.tempo.count_at(freeze.none_from)));

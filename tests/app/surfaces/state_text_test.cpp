@@ -97,6 +97,20 @@ TEST_F(StateTextTest, SaysWhatAResetMoveWaitsFor) {
       "s1 2:3 count 7 | 100 % | NO RESET MOVE: send people by word of mouth, then \"placed\" | all 10 nodes right");
 }
 
+TEST_F(StateTextTest, TellsWhatAFreezeOfAResetMoveWouldDo) {
+  view_.show.phase = Phase::resets;
+  view_.show.position = instant_at(3);
+  view_.freeze = {true, 1, kNever, 2};
+  EXPECT_EQ(line(), "s1 2:3 count 7 | 100 % | reset move | freeze: 1 pair may touch | all 10 nodes right");
+  view_.freeze.pairs = 0;
+  EXPECT_EQ(line(), "s1 2:3 count 7 | 100 % | reset move | freeze safe | all 10 nodes right");
+  view_.show.phase = Phase::reset_held;
+  EXPECT_EQ(
+      line(),
+      "s1 2:3 count 7 | 100 % | HOLD in the reset move: GO goes on | going on: 2 pairs may touch where people have "
+      "walked on | all 10 nodes right");
+}
+
 TEST_F(StateTextTest, TheJsonHasEveryFigure) {
   view_.show.phase = Phase::runs;
   view_.show.active = 1;
