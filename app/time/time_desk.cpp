@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "core/boot_time.hpp"
-
 namespace footlight::app {
 namespace {
 
@@ -18,8 +16,8 @@ constexpr std::size_t kMostFixes = 16;  // at once; the cue thread's ring takes 
 
 }  // namespace
 
-TimeDesk::TimeDesk(const Show& show, std::unique_ptr<TimeSource> source, const Clock& clock)
-    : show_(show), source_(std::move(source)), clock_(clock) {}
+TimeDesk::TimeDesk(const Show& show, std::unique_ptr<TimeSource> source, const Clock& clock, OtherClocks others)
+    : show_(show), source_(std::move(source)), clock_(clock), others_(std::move(others)) {}
 
 void TimeDesk::use(const Clock& run) { run_ahead_ = run.now() - clock_.now(); }
 
@@ -47,7 +45,7 @@ void TimeDesk::look(const DeskView& view, RunDesk& desk) {
 }
 
 void TimeDesk::watch(Instant now, RunDesk& desk) {
-  const auto news = watch_.take(now, boot_time(), wall_time());
+  const auto news = watch_.take(now, others_.boot(), others_.wall());
   if (!news) return;
   if (news->kind == ClockWatch::Kind::stepped) {
     desk.tell({RunEvent::Kind::note,
