@@ -26,7 +26,7 @@ LIMITS = {
     ("formation 640x480", 3290): 20e-6, ("formation 1920x1080", 3290): 40e-6,
     ("unit flat", 100): 0.1e-3, ("unit flat", 1000): 2e-3, ("unit flat", 3290): 9e-3, ("unit flat", 5000): 15e-3,
     ("schedule over cells", 3290): 0.8e-3, ("schedule over cells", 100_000): 0.12,
-    ("show ceremony", 3290): 4.0, ("show stadium", 100_000): 30.0, ("replan ceremony, image", 3290): 0.1,
+    ("show ceremony", 3290): 4.0, ("show stadium", 100_000): 30.0, ("replan ceremony, image", 3290): 0.1, ("repair ceremony", 3290): 2.0, ("reset way ceremony", 3290): 2.0,
 }
 
 
@@ -67,7 +67,7 @@ def summary(job, entries):
     def median(field):
         return statistics.median(entry[field] * scale[entry["time_unit"]] for entry in entries)
     # Work on several cores, and on another process, is judged by the clock; all other by the processor's time.
-    clock = re.match("show|replan|validate|measure|decode|step", job) is not None
+    clock = re.match("show|replan|repair|reset|validate|measure|decode|step", job) is not None
     first = entries[0]
     error = next((entry["error_message"] for entry in entries if entry.get("error_occurred")), None)
     if error:
@@ -198,7 +198,7 @@ def table(rows):
     for row in rows:
         key = (row["job"], row["size"])
         ours = duration(row["ours_s"]) if row["checked"] else "wrong: " + row["error"]
-        if re.match("show|replan|validate|measure", row["job"]) and row["checked"]:
+        if re.match("show|replan|repair|reset|validate|measure", row["job"]) and row["checked"]:
             ours += f" (CPU {duration(row['ours_cpu_s'])})"
         memory = "" if row["ours_mb"] is None else f"{row['ours_mb']:.1f}"
         first = [row["job"], f"{row['size']:,}", ours, memory] if key != last else [""] * 4

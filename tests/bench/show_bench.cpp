@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole shows from shows/, planned by the library; reading and decoding are timed apart.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <thread>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include <tbb/global_control.h>
 
+#include "app/reset_way.hpp"
 #include "config/media.hpp"
 #include "config/show_file.hpp"
 #include "planner/plan_show.hpp"
@@ -169,6 +172,57 @@ void replan(benchmark::State& state, SectionIndex section, std::size_t most_anew
   state.counters["people"] = static_cast<double>(decoded->show.performers.size());
 }
 
+/// Somebody of the ceremony does not come: whoever changes least takes her way.
+void repair(benchmark::State& state) {
+  auto decoded = decode("ceremony");
+  if (!decoded) return state.SkipWithError("the show cannot be read");
+  planner::Reuse reuse;
+  planner::Stages stages;
+  reuse.stages = &stages;
+  for (const Section& one : decoded->show.sections) reuse.film_ids.push_back(one.name);
+  const auto before = planner::plan_show(decoded->show, decoded->films, {}, reuse);
+  if (!before) return state.SkipWithError("the show cannot be planned");
+  std::vector<std::pair<planner::StageKey, std::string>> first;
+  for (const auto& [key, value] : stages.all()) first.emplace_back(key, value);
+  decoded->show.performers[6].absent = true;
+  std::optional<Result<planner::Planned>> planned;
+  for (auto _ : state) {
+    state.PauseTiming();
+    planner::Stages again;
+    for (const auto& [key, value] : first) again.load(key, value);
+    reuse.stages = &again;
+    state.ResumeTiming();
+    planned = planner::plan_show(decoded->show, std::vector<std::optional<Film>>(decoded->films.size()), {}, reuse);
+  }
+  if (!*planned || !(*planned)->plan.valid) return state.SkipWithError("the repaired show cannot be planned");
+  const Plan& after = (*planned)->plan;
+  std::size_t changed = 0;
+  for (std::size_t p = 0, q = 0; p < before->plan.performers.size(); ++p) {
+    if (q < after.performers.size() && after.performers[q] == before->plan.performers[p]) {
+      changed += after.tracks[q++] != before->plan.tracks[p] ? 1 : 0;
+    }
+  }
+  if (changed != 1) state.SkipWithError("somebody else changes than who takes the way");
+  state.counters["people"] = static_cast<double>(decoded->show.performers.size());
+}
+
+/// Everybody of the ceremony goes back, from the last formation of a section to the first of the one before.
+void reset_way(benchmark::State& state) {
+  const auto decoded = decode("ceremony");
+  if (!decoded) return state.SkipWithError("the show cannot be read");
+  const auto planned = planner::plan_show(decoded->show, decoded->films);
+  if (!planned || !planned->plan.valid) return state.SkipWithError("the show cannot be planned");
+  const Plan& plan = planned->plan;
+  const std::size_t last = plan.sections.size() / 2;
+  const std::atomic<bool> goes_on{false};
+  std::optional<Result<Plan>> way;
+  for (auto _ : state) {
+    way = app::plan_reset_way(decoded->show, plan, plan.sections[last].end, plan.sections[last - 1].start, 4, goes_on);
+  }
+  if (!*way || !planner::validate(**way).valid()) return state.SkipWithError("no way was found");
+  state.counters["people"] = static_cast<double>((*way)->performers.size());
+}
+
 }  // namespace
 
 void register_shows(const Effort& effort) {
@@ -179,6 +233,13 @@ void register_shows(const Effort& effort) {
     benchmark::RegisterBenchmark(
         job_name("ours", std::string("replan ceremony, ") + name, 0).c_str(),
         [=, s = section, m = most](benchmark::State& state) { replan(state, SectionIndex(s), m); })
+        ->Iterations(1)
+        ->Repetitions(3)
+        ->MeasureProcessCPUTime();
+  }
+  using Job = std::pair<const char*, void (*)(benchmark::State&)>;
+  for (const auto& [name, job] : {Job{"repair ceremony", repair}, Job{"reset way ceremony", reset_way}}) {
+    benchmark::RegisterBenchmark(job_name("ours", name, 0).c_str(), job)
         ->Iterations(1)
         ->Repetitions(3)
         ->MeasureProcessCPUTime();

@@ -4,7 +4,7 @@ import os
 import time
 
 from rehearse import Desk
-from stage import wait_for
+from stage import SHOW, wait_for
 
 
 def make_cases(Stage, program):
@@ -180,5 +180,26 @@ def make_cases(Stage, program):
             wait_for(lambda: self.edit(desk)["absent"] == [{"id": "5", "cover": "repaired"}], "the repair")
             report = self.play_to_the_end(desk, people=11)
             self.assertEqual(sum(look not in (0, 255) for node in report["floor"] for look in node["looks"]), 11)
+
+        def test_a_repair_gives_the_way_to_who_is_on_stage_least_and_nobody_else_changes(self):
+            self.make_show(show=SHOW.replace("  clearance:", "  reserve: [A8]\n  clearance:"))
+            for name in ("line.csv", "ring.csv", "arrow.csv"):
+                self.rewrite(name, "\n".join([*self.cells(name)[:-1], "12,0,7"]) + "\n")  # she waits in the wings
+            self.serve()
+            desk = self.start_desk()
+            desk.say("repair 5")
+            self.wait_for_edit(desk, "waits")
+            self.assertEqual(self.edit(desk)["people"], 1)
+            desk.say("take")
+            wait_for(lambda: desk.state["reset"]["state"] == "ready", "the way to her place", 60)
+            self.assertTrue(any("1 person walks, at most" in line.get("reset", "") for line in desk.lines), desk.lines)
+            desk.say("go")
+            desk.until("the reset move", phase="resets")
+            desk.until("the top", phase="stands", reset={"state": "none"})
+            self.assertEqual(self.edit(desk)["absent"], [{"id": "5", "cover": "repaired"}])
+            desk.say("changed")
+            wait_for(lambda: "1 to be told: 12" in desk.answers(), "who changes")
+            report = self.play_to_the_end(desk, people=11)
+            self.assertEqual(sum(look not in (0, 255) for node in report["floor"] for look in node["looks"]), 11, "eleven of twelve, and the one from the wings is among them")
 
     return Editing
