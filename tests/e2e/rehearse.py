@@ -100,6 +100,7 @@ def make_cases(Stage, program):
             desk = self.desk_in_cue_2("--count-in", "0")
             desk.say(*["step", "placed", "go", "jump cue 99", "cancel"] * 400)
             desk.until("the end", phase="finished")
+            wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in desk.state["buses"]), "all nodes right")
             desk.say("quit")
             report = desk.report()
             self.assertEqual(desk.process.wait(20), 0)
