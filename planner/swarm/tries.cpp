@@ -2,6 +2,7 @@
 #include "planner/swarm/tries.hpp"
 
 #include <cmath>
+#include <cstring>
 
 #include "core/check.hpp"
 #include "planner/cpu_clones.hpp"
@@ -12,37 +13,37 @@ namespace {
 using lanes::kLanes;
 using Lanes = Tries::Lanes;
 
+/// All lanes as one value: of loops over lanes inside of another loop compilers do not make vectors.
+using Wide [[gnu::vector_size(sizeof(Lanes))]] = double;
+
 FOOTLIGHT_CPU_CLONES
-void sweep_all(const Surroundings::Near* near, std::size_t count, const Lanes& x, const Lanes& y, Lanes& squared,
-               Lanes& room) {
-  Lanes per_square;
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    const double square = x[l] * x[l] + y[l] * y[l];
-    per_square[l] = square > 0 ? 1 / square : 0.0;
-  }
-  Lanes least_squared = squared;
-  Lanes least_room = room;
+void sweep_all(const Surroundings::Near* near, std::size_t count, Tries& tries) {
+  const Wide none = {};
+  const Wide all = none + 1.0;
+  Wide x, y, least_squared, least_room;
+  std::memcpy(&x, tries.x.data(), sizeof x);
+  std::memcpy(&y, tries.y.data(), sizeof y);
+  std::memcpy(&least_squared, tries.squared.data(), sizeof least_squared);
+  std::memcpy(&least_room, tries.room.data(), sizeof least_room);
+  const Wide square = x * x + y * y;
+  const Wide per_square = square > none ? all / square : none;
   for (std::size_t n = 0; n < count; ++n) {
     const double away_x = near[n].away.x;
     const double away_y = near[n].away.y;
-    const double per_scope_square = near[n].per_scope_square;
-    const double keep_square = near[n].keep_square;
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double end_x = x[l] - away_x;
-      const double end_y = y[l] - away_y;
-      const double end = (end_x * end_x + end_y * end_y) * per_scope_square;
-      least_squared[l] = end < least_squared[l] ? end : least_squared[l];
-      const double along = (away_x * x[l] + away_y * y[l]) * per_square[l];
-      const double from_begin = along > 0.0 ? along : 0.0;
-      const double share = from_begin < 1.0 ? from_begin : 1.0;
-      const double by_x = away_x - share * x[l];
-      const double by_y = away_y - share * y[l];
-      const double spare = by_x * by_x + by_y * by_y - keep_square;
-      least_room[l] = spare < least_room[l] ? spare : least_room[l];
-    }
+    const Wide end_x = x - away_x;
+    const Wide end_y = y - away_y;
+    const Wide end = (end_x * end_x + end_y * end_y) * near[n].per_scope_square;
+    least_squared = end < least_squared ? end : least_squared;
+    const Wide along = (away_x * x + away_y * y) * per_square;
+    const Wide from_begin = along > none ? along : none;
+    const Wide share = from_begin < all ? from_begin : all;
+    const Wide by_x = away_x - share * x;
+    const Wide by_y = away_y - share * y;
+    const Wide spare = by_x * by_x + by_y * by_y - near[n].keep_square;
+    least_room = spare < least_room ? spare : least_room;
   }
-  squared = least_squared;
-  room = least_room;
+  std::memcpy(tries.squared.data(), &least_squared, sizeof least_squared);
+  std::memcpy(tries.room.data(), &least_room, sizeof least_room);
 }
 
 FOOTLIGHT_CPU_CLONES
@@ -72,9 +73,7 @@ void turn_all(Point step, const Lanes& angle_rad, Lanes& x, Lanes& y) {
 
 }  // namespace
 
-void sweep(std::span<const Surroundings::Near> near, Tries& tries) {
-  sweep_all(near.data(), near.size(), tries.x, tries.y, tries.squared, tries.room);
-}
+void sweep(std::span<const Surroundings::Near> near, Tries& tries) { sweep_all(near.data(), near.size(), tries); }
 
 void weigh(const Aim& aim, Tries& tries) { weigh_all(aim, tries); }
 
