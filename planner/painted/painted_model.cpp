@@ -305,6 +305,7 @@ Point PaintedModel::walked(Point from, Point to) const {
     return share >= 1 || whole <= 0 ? b : a + std::max(0.0, share - kHair_m / whole) * (b - a);
   };
   const Point start = from;
+  const double most = distance(from, to);
   const Point first = reached(from, to);
   Point last = first;
   for (int slide = 0; slide < kSlides && last != to; ++slide) {
@@ -316,6 +317,9 @@ Point PaintedModel::walked(Point from, Point to) const {
     to = from + (rest - std::min(0.0, dot(rest, off)) * off);
     last = reached(from, to);
   }
+  // A hair off a wall is no way to be faster.
+  const double whole = distance(start, last);
+  if (whole > most) last = start + most / whole * (last - start);
   // Others see a straight line from generation to generation; it must be free as well.
   return task_.floor->free_share(start, last) >= 1 ? last : first;
 }

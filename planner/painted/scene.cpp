@@ -24,6 +24,8 @@ namespace {
 constexpr double kBackgroundReach_m = 2;   // of its field
 constexpr double kLeastStrokeShare = 0.1;  // of the largest piece of its colour
 constexpr double kUnknownShare = 0.002;    // of the picture: worth a note
+constexpr double kOfItsWidth = 1.75;       // nearer to its line is a stroke's own
+constexpr double kBesideShare = 0.15;      // of a stroke's paint: worth a note
 constexpr double kNearShape = 0.04;        // of the raster's diagonal, and a stroke's width: its ends meet their shapes
 
 class SceneReader {
@@ -263,6 +265,7 @@ class SceneReader {
                           "paint it bright where people come from and dark where they go");
         }
         if (auto wrong = check_stroke(i, party, leg, *read.stroke)) return wrong;
+        note_beside(i, *read.stroke);
         party.legs[leg].fields.push_back(flow_field(*read.stroke, out_.width, out_.height));
         party.legs[leg].strokes.push_back(std::move(*read.stroke));
       }
@@ -299,12 +302,52 @@ class SceneReader {
                                   to_text(options_.paint[paint].colour), ends, party.orders[leg + 1]),
                       "a stroke is bright where people come from");
     }
+    if (background_near(head) || background_near(tail)) {
+      return error_at(paint,
+                      fmt::format("the background cuts the stroke {} between {}: a piece of it ends there",
+                                  to_text(options_.paint[paint].colour), ends),
+                      "leave a gap in the background, or lead the stroke around it");
+    }
     return error_at(paint,
                     fmt::format("the stroke {} does not connect {}: its tail is {:.1f} m from the one, its head {:.1f} "
                                 "m from the other",
                                 to_text(options_.paint[paint].colour), ends, tail_px * out_.floor.pixel_m,
                                 head_px * out_.floor.pixel_m),
                     fmt::format("draw it out to within {:.1f} m of both", near * out_.floor.pixel_m));
+  }
+
+  /// Right beside the end of a stroke.
+  [[nodiscard]] bool background_near(Point end) const {
+    constexpr int kBeside_px = 2;
+    for (int dy = -kBeside_px; dy <= kBeside_px; ++dy) {
+      for (int dx = -kBeside_px; dx <= kBeside_px; ++dx) {
+        const int x = static_cast<int>(end.x) + dx;
+        const int y = static_cast<int>(end.y) + dy;
+        if (out_.background.inside(x, y) && out_.background.at(x, y) != 0) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Paint of a stroke that its line does not explain.
+  void note_beside(std::size_t paint, const Stroke& stroke) {
+    std::size_t beside = 0;
+    for (int y = 0; y < stroke.pixels.height; ++y) {
+      for (int x = 0; x < stroke.pixels.width; ++x) {
+        if (stroke.pixels.at(x, y) == 0) continue;
+        bool within = false;
+        for (std::size_t i = 0; i < stroke.line.size() && !within; ++i) {
+          within = distance({x + 0.5, y + 0.5}, stroke.line[i]) <= kOfItsWidth * stroke.half_width[i];
+        }
+        beside += within ? 0 : 1;
+      }
+    }
+    const double share = static_cast<double>(beside) / static_cast<double>(count(stroke.pixels));
+    if (share < kBesideShare) return;
+    out_.notes.push_back(
+        fmt::format("{:.0f} % of the stroke {} lie beside the line that is read from it: it forks, turns "
+                    "back within its own width, or two strokes of this colour cross",
+                    100 * share, to_text(options_.paint[paint].colour)));
   }
 
   std::optional<Error> check_ways(const PaintedScene::Party& party) const {

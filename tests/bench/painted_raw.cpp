@@ -38,8 +38,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kStep_s = 0.5;  // at most a count
-/// As planner/motion_section.cpp gives it to models.
-constexpr double kModelShare = 0.95;
 
 [[noreturn]] void fail(const std::string& message) {
   std::cerr << message << '\n';
@@ -77,8 +75,8 @@ struct Painted {
 planner::MotionTask task_of(const Painted& one, const planner::PaintedScene& scene, const planner::MotionFloor& floor) {
   const Show& show = one.show;
   const Section& section = one.section();
-  const double duration_s = to_seconds(show.tempo.at(section.start_count + section.duration_counts) -
-                                       show.tempo.at(section.start_count));
+  const double duration_s =
+      to_seconds(show.tempo.at(section.start_count + section.duration_counts) - show.tempo.at(section.start_count));
   const planner::MarkInstants marks = planner::mark_instants(
       {&show.tempo, &show.stage.grid, show.stage.walk, section.start_count, section.duration_counts,
        planner::section_speed(show, section), section.motion->mark_counts});
@@ -87,7 +85,7 @@ planner::MotionTask task_of(const Painted& one, const planner::PaintedScene& sce
   for (const CellIndex cell : scene.end_cells()) task.to.push_back(show.stage.grid.centre(cell));
   task.group.assign(task.people(), planner::kNoGroup);
   task.radius_m.assign(task.people(), show.stage.clearance_m / 2);
-  task.speed_mps.assign(task.people(), kModelShare * marks.followed_mps);
+  task.speed_mps.assign(task.people(), planner::kModelShare * marks.followed_mps);
   for (double at_s = 0; at_s < duration_s - 1e-9; at_s += kStep_s) task.at_s.push_back(at_s);
   task.at_s.push_back(duration_s);
   task.floor = &floor;
@@ -163,14 +161,12 @@ Json maps() {
   constexpr int kPeople = 225;
   const planner::Lattice lattice(kPeople, 1);
   const std::vector<std::pair<std::string, planner::PixelSet>> shapes{
-      {"horseshoe",
-       shape_where([](double x, double y) {
+      {"horseshoe", shape_where([](double x, double y) {
          const double r = std::hypot(x, y);
          return r <= 38 && r >= 16 && !(y > 0 && std::abs(x) < 15);
        })},
-      {"star", shape_where([](double x, double y) {
-         return std::hypot(x, y) <= 26 + 12 * std::cos(5 * std::atan2(x, -y));
-       })}};
+      {"star",
+       shape_where([](double x, double y) { return std::hypot(x, y) <= 26 + 12 * std::cos(5 * std::atan2(x, -y)); })}};
   const std::vector<std::tuple<std::string, bool, bool>> kinds{{"both forces", true, true},
                                                                {"without the distance force", true, false},
                                                                {"without the shape force", false, true},
@@ -200,7 +196,9 @@ Json train(int people, int inputs) {
   const double begin = cpu_s();
   const auto places = planner::sodm({&shape, &lattice, inputs, 1, true, true});
   const double spent = cpu_s() - begin;
-  return {{"people", people}, {"inputs", std::max(inputs, 20 * people)}, {"cpu_s", spent},
+  return {{"people", people},
+          {"inputs", std::max(inputs, 20 * people)},
+          {"cpu_s", spent},
           {"quality", quality_of(shape, lattice, places)}};
 }
 
@@ -225,7 +223,7 @@ Json steps(const Painted& one) {
     std::swap(now, next);
   }
   const double spent_s = cpu_s() - begin;
-  return {{"people", task.people()}, {"read_cpu_s", read_s},  {"prepared_cpu_s", prepared_s},
+  return {{"people", task.people()}, {"read_cpu_s", read_s},   {"prepared_cpu_s", prepared_s},
           {"steps", done},           {"steps_cpu_s", spent_s}, {"steps_a_second", done / spent_s}};
 }
 

@@ -16,6 +16,7 @@
 
 #include "core/rng.hpp"
 #include "planner/motion/models.hpp"
+#include "tests/support/painted_between.hpp"
 #include "tests/support/plan_builder.hpp"
 
 namespace footlight::planner {
@@ -28,12 +29,13 @@ struct Model {
 
 void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
 
-/// Every model that leads a crowd from places to places. A painting brings both of its own: tests/planner/painted.
+/// Every model that leads a crowd. A painting brings its own places: here one is made of the task's.
 std::vector<Model> models() {
   std::vector<Model> out;
   out.push_back({"srd", SrdOptions{}});
   out.push_back({"collective", CollectiveOptions{}});
   out.push_back({"swarm", SwarmOptions{}});
+  out.push_back({"painted", PaintedOptions{}});
   return out;
 }
 
@@ -45,6 +47,7 @@ struct Scene {
   std::optional<Ways> ways;
   std::optional<MotionFloor> floor;
   MotionTask task;
+  PaintedScene painting;
 };
 
 constexpr double kSpeed_mps = 1.2;
@@ -75,6 +78,8 @@ void lay_out(Scene& scene, std::size_t people, bool wall, double every_s) {
   for (double at_s = 0; at_s < kDuration_s + every_s / 2; at_s += every_s) task.at_s.push_back(at_s);
   task.floor = &*scene.floor;
   task.seed = 7;
+  scene.painting = test::painted_between(task, !wall);
+  task.painting = &scene.painting;
 }
 
 class MotionContract : public testing::TestWithParam<Model> {

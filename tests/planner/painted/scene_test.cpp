@@ -164,6 +164,30 @@ TEST(PaintedScene, AWallThatCutsTheWayIsRefused) {
       << message;
 }
 
+TEST(PaintedScene, AWallAcrossAStrokeIsNamed) {
+  PaintedShow one;
+  one.painter.box(56, 20, 64, 60, kGrey);
+  const auto scene = one.read();
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().message,
+            "show.yaml:12:7: error: sections[0].paint[2]: the background cuts the stroke #DC2828 between shape 1 and "
+            "shape 2 of who is in no painted group: a piece of it ends there (leave a gap in the background, or lead "
+            "the stroke around it)");
+}
+
+TEST(PaintedScene, TwoStrokesOfOneColourThatCrossAreTold) {
+  PaintedShow one;
+  EXPECT_TRUE(one.read()->notes.empty());
+  one.painter.stroke({{60, 20}, {60, 60}}, 4, {255, 150, 150}, {110, 20, 20});
+  const auto scene = one.read();
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->notes.size(), 1U);
+  EXPECT_NE(scene->notes[0].find("% of the stroke #DC2828 lie beside the line that is read from it: it forks, turns "
+                                 "back within its own width, or two strokes of this colour cross"),
+            std::string::npos)
+      << scene->notes[0];
+}
+
 TEST(PaintedScene, AGroupWithOneShapeHasNowhereToGo) {
   PaintedShow one;
   one.options.paint.erase(one.options.paint.begin() + 1, one.options.paint.end());
