@@ -111,6 +111,10 @@ def make_stage(Stage, program):
         def run_with_console(self, *options, place=None):
             self.make_show()
             self.serve()
+            self.start_run(*options, place=place)
+
+        def start_run(self, *options, place=None):
+            """On the markers that are served already."""
             self.port = free_port()
             self.process = subprocess.Popen([program(), "run", self.show, "--transport-map", self.map, "--status-lines", "--go-guard", "0.2", "--count-in", "1",
                                          "--console", place.format(self.port) if place else str(self.port), *options],
