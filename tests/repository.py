@@ -53,7 +53,7 @@ def faults_without_test():
         with open(os.path.join(ROOT, path)) as f:
             tests += f.read()
     names = {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", tests, re.M)}
-    names |= {f"{suite}.{name}" for suite in ("Console", "Devices", "Live") for name in re.findall(r"def (test_\w+)", tests)}
+    names |= {f"{suite}.{name}" for suite in ("Console", "Devices", "Live", "Survive") for name in re.findall(r"def (test_\w+)", tests)}
     named = []
     for page in ("faults.md", "console.md"):
         with open(os.path.join(ROOT, "docs", page)) as f:

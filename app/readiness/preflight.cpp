@@ -34,9 +34,14 @@ std::string ids_of(const FoundNode& node) {
   return ids.empty() ? "" : " (" + ids + ")";
 }
 
-/// Asks one bus who is there. @param wrong what is, a sentence for each
-Status<> call_roll_of(Session& session, const DeviceBusChoice& choice, std::vector<std::string>& wrong,
-                      bool& can_be_asked) {
+/// What a roll call has found, a sentence for each.
+struct Doubles {
+  std::vector<std::string> proved;     ///< two unique ids at one address
+  std::vector<std::string> suspected;  ///< answers over each other, of devices without unique ids
+};
+
+/// Asks one bus who is there.
+Status<> call_roll_of(Session& session, const DeviceBusChoice& choice, Doubles& doubles, bool& can_be_asked) {
   auto bus = DeviceBus::open(session, choice);
   if (!bus) return std::move(bus).error();
   DeviceBus& it = **bus;
@@ -48,22 +53,37 @@ Status<> call_roll_of(Session& session, const DeviceBusChoice& choice, std::vect
   if (auto asked = it.run(session, service, "roll call on " + choice.bus); !asked) return asked;
   for (const FoundNode& node : service.found()) {
     if (node.kind != FoundNode::Kind::twofold) continue;
-    wrong.push_back(
-        fmt::format("{}: several devices at address {}{}", it.name_of(node.address), node.address, ids_of(node)));
+    const auto with_id = [](const drivers::Identity& identity) { return identity.unique_id.has_value(); };
+    const bool proved = std::ranges::count_if(node.identities, with_id) > 1;
+    (proved ? doubles.proved : doubles.suspected)
+        .push_back(
+            fmt::format("{}: several devices at address {}{}", it.name_of(node.address), node.address, ids_of(node)));
   }
   return Done{};
 }
 
+/// In a rehearsal a bus that cannot be asked is a note, and so are answers over each other, which a bad line has, too.
 Status<> call_roll(Session& session, const BusesToAsk& buses, Readiness& readiness) {
-  std::vector<std::string> wrong;
+  const bool live = readiness.scope() == Scope::live;
+  Doubles doubles;
   for (const Bus& bus : buses.wires.buses) {
     DeviceBusChoice choice;
     choice.bus = bus.name;
     choice.show = buses.show;
     choice.transports = buses.transports;
     bool can_be_asked = false;
-    if (auto called = call_roll_of(session, choice, wrong, can_be_asked); !called) return called;
-    if (!can_be_asked) session.note("bus " + bus.name + ": its devices cannot say who they are");
+    const auto called = call_roll_of(session, choice, doubles, can_be_asked);
+    if (!called && (live || called.error().kind == ErrorKind::interrupted)) return called;
+    if (!called) {
+      session.note("roll call: " + called.error().message);
+    } else if (!can_be_asked && live) {
+      session.note("bus " + bus.name + ": its devices cannot say who they are");
+    }
+  }
+  std::vector<std::string> wrong = doubles.proved;
+  if (live) wrong.insert(wrong.end(), doubles.suspected.begin(), doubles.suspected.end());
+  if (!live) {
+    for (const std::string& one : doubles.suspected) session.note(one + ", or a line that garbles answers");
   }
   if (wrong.empty()) return Done{};
   std::string text = "two devices at one address, `footlight devices set-address` tells them apart: ";
@@ -146,9 +166,12 @@ Status<> preflight(Session& session, const BusesToAsk& buses, const Show& show, 
   if (readiness.scope() == Scope::none) return Done{};
   readiness.tell(Stage::time, State::skipped, "the show's own clock");
   if (readiness.scope() != Scope::live) readiness.tell(Stage::probes, State::skipped, "only --scope live asks");
-  if (buses.outlived) readiness.take_up(*buses.outlived);
-  if (readiness.scope() != Scope::live || buses.outlived) return Done{};
+  if (buses.outlived) {
+    readiness.take_up(*buses.outlived);
+    return Done{};
+  }
   if (auto called = call_roll(session, buses, readiness); !called) return called;
+  if (readiness.scope() != Scope::live) return Done{};
   return light_probes(session, show, buses.wires, readiness);
 }
 

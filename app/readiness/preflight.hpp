@@ -28,9 +28,10 @@ struct BusesToAsk {
   std::optional<std::string> outlived{};
 };
 
-/// What has to be done before a show has the buses for itself, where the scope is live: every bus is asked who is
-/// there, by unique id where its devices have one, and three lamps are lit one after the other, each alone, until
-/// somebody has confirmed them on stdin. Tells `readiness`. Errors: a bus that cannot be opened or asked; interrupted.
+/// What has to be done before a show has the buses for itself, where the scope lets it have them: every bus is asked
+/// who is there, by unique id where its devices have one; two devices at one address lock GO. Where the scope is live,
+/// three lamps are lit one after the other, each alone, until somebody has confirmed them on stdin. Not where a run is
+/// taken up. Tells `readiness`. Errors: a bus that cannot be opened or asked, where the scope is live; interrupted.
 [[nodiscard]] Status<> preflight(Session& session, const BusesToAsk& buses, const Show& show, Readiness& readiness);
 
 }  // namespace footlight::app
