@@ -197,7 +197,7 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.changes = &editing;
-  editing.on_taken([&] { surviving.journal().plan_is(config::digest_of(planned.plan())); });
+  editing.on_taken([&] { surviving.plan_is(config::digest_of(planned.plan())); });
   live.go = options.go;
   live.rehearsal = {options.count_in(), seconds(options.go_guard_s)};
   const SteadyClock sound_clock;

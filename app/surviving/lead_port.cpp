@@ -101,6 +101,9 @@ void LeadPort::look(const DeskView& view, RunDesk& desk) {
   const Duration now = machine_time();
   const Instant at = view.show.at;
   machine_ahead_ = std::min(machine_ahead_, now - at.time_since_epoch());
+  if (std::exchange(sent_away_, 0) > 0) {
+    desk.tell({RunEvent::Kind::alarm, "the understudy has the plan before this one: begin it again with these files"});
+  }
   welcome(now);
   // Only the cue thread's own words are passed on: when it falls silent, so does this.
   const bool due = said_at_ == Instant::min() || at - said_at_ >= kLeadEvery;
@@ -159,6 +162,15 @@ bool LeadPort::take_line(Client& client, std::string_view line, RunDesk& desk) {
   client.follows = true;
   desk.tell({RunEvent::Kind::note, "an understudy follows"});
   return say(client.socket, leads_line(settings_.epoch));
+}
+
+void LeadPort::plan_is(const std::string& digest) {
+  if (digest == settings_.plan) return;
+  settings_.plan = digest;
+  sent_away_ += std::erase_if(clients_, [](const Client& client) {
+    if (client.follows) (void)say(client.socket, refused_line("another plan is led from now on: begin it again"));
+    return client.follows;
+  });
 }
 
 void LeadPort::close(const std::string& how) {

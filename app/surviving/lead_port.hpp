@@ -36,6 +36,9 @@ class LeadPort final : public Surface {
   [[nodiscard]] int port() const { return port_; }
   /// The epoch of an understudy that has taken over; 0: none has.
   [[nodiscard]] std::uint32_t taken_over() const { return taken_over_; }
+  /// Another plan is led from now on: who follows has the one before, and its places would mean something else to her.
+  /// She is told so, and hung up on. @param digest config::digest_of
+  void plan_is(const std::string& digest);
   /// Says good-bye: nobody is to take over from a run that ends of its own will.
   void close(const std::string& how);
 
@@ -58,6 +61,7 @@ class LeadPort final : public Surface {
   int port_;
   std::vector<Client> clients_;
   std::uint32_t taken_over_ = 0;
+  std::size_t sent_away_ = 0;  ///< with the plan before, and nobody has been told yet
   Duration machine_ahead_ = Duration::max();
   Instant said_at_ = Instant::min();  ///< of the run's clock
 };

@@ -156,6 +156,11 @@ Status<> Surviving::open_door(const SurvivingOptions& options, const Note& note)
   return Done{};
 }
 
+void Surviving::plan_is(const std::string& digest) {
+  journal_.plan_is(digest);
+  if (door_) door_->plan_is(digest);
+}
+
 void Surviving::close(const std::string& how) {
   // Who is interrupted may be a machine that is switched off: then somebody else has to lead.
   if (door_ && (how == kOver || how == kQuit) && !handed_over()) door_->close(how);

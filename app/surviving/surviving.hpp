@@ -81,7 +81,8 @@ class Surviving {
   void join(RunDesk& desk);
   /// The options borrow the desk.
   void take_up(const CutOff& cut, AfterDeath policy, RunDesk& desk, LiveOptions& live);
-  [[nodiscard]] Journal& journal() { return journal_; }
+  /// Another plan is led from now on. @param digest config::digest_of
+  void plan_is(const std::string& digest);
 
  private:
   std::string plan_;

@@ -219,6 +219,32 @@ TEST_F(LeadPortTest, AnotherPlanAndAnotherTokenAreRefusedAndSeen) {
                                        "an understudy without the right token was refused"));
 }
 
+TEST_F(LeadPortTest, WhoFollowsWithThePlanBeforeIsSentAwayWhenAnotherIsTaken) {
+  open("");
+  bool taken = false;
+  const auto before = follow_until(settings(), [&] {
+    if (notes_.size() > 1 && !std::exchange(taken, true)) door_->plan_is("def");
+    return false;
+  });
+  ASSERT_FALSE(before) << "it takes over nothing: places of the new plan mean something else in its own";
+  EXPECT_EQ(before.error().message,
+            "the lead refuses this understudy: another plan is led from now on: begin it again");
+  look();
+  EXPECT_THAT(ears_.heard, ElementsAre("an understudy follows",
+                                       "the understudy has the plan before this one: begin it again with these files"));
+  EXPECT_EQ(follow_until(settings("abc"), [] { return false; }).error().message,
+            "the lead refuses this understudy: another plan is led here");
+  auto wish = settings("def");
+  notes_.clear();
+  wish.wants_to_lead = [&] { return notes_.size() > 1; };
+  const auto after = follow_until(wish, [] { return false; });
+  ASSERT_TRUE(after) << after.error().message;
+  const std::size_t heard = ears_.heard.size();
+  door_->plan_is("def");
+  look();
+  EXPECT_EQ(ears_.heard.size(), heard) << "the same plan again is no other one";
+}
+
 TEST_F(LeadPortTest, GoodByeIsNoReasonToTakeOver) {
   open("");
   bool said = false;
