@@ -16,14 +16,14 @@ struct Tries {
   using Lanes = std::array<double, lanes::kLanes>;
 
   std::size_t size = 0;
-  Lanes x{}, y{};      ///< each step, m; nothing beyond `size`
-  Lanes squared{};     ///< |P - Q|^2 / sigma^2 of the nearest object Q, where the step ends
-  Lanes room{};        ///< least over all near of the swept squared distance less what it must be, m^2; >= 0: free of them
-  Lanes worst{};       ///< cost of the nearest object, the ground included
-  Lanes weighed{};     ///< the same, by c_obj
-  Lanes value{};       ///< Eq. 9
-  Lanes ground{};      ///< cost of the ground
-  Lanes disc_m{};      ///< how far it stays off everything that moves, beyond what it has to; negative: too near
+  Lanes x{}, y{};   ///< each step, m; nothing beyond `size`
+  Lanes squared{};  ///< |P - Q|^2 / sigma^2 of the nearest object Q, where the step ends
+  Lanes room{};     ///< least over all near of the swept squared distance less what it must be, m^2; >= 0: free of them
+  Lanes worst{};    ///< cost of the nearest object, the ground included
+  Lanes weighed{};  ///< the same, by c_obj
+  Lanes value{};    ///< Eq. 9
+  Lanes ground{};   ///< cost of the ground
+  Lanes disc_m{};   ///< how far it stays off everything that moves, beyond what it has to; negative: too near
   std::array<bool, lanes::kLanes> allowed{};  ///< touches nobody, and nothing that stands
 
   void add(Point step) {

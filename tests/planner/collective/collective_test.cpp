@@ -348,7 +348,6 @@ TEST(Collective, SlowPeopleAreNotOverrunAndEverybodyArrives) {
 }
 
 TEST(SocialCrowd, WhoIsPressedAgainstAWallSlidesAlongIt) {
-  const Grid grid = floor_of(21, 16);
   const FloorTask floor = task_on(21, 16, wall(10, 10), {{-6, 12}}, {{6, 5}}, 30);
   CollectiveOptions options;
   options.fluctuation_mps2 = 0;
