@@ -17,11 +17,13 @@
 #include "planner/motion/crowd.hpp"
 #include "planner/motion/model.hpp"
 #include "planner/motion/neighbours.hpp"
+#include "planner/painted/painted_model.hpp"
 #include "planner/repair/closest_approach.hpp"
 #include "planner/srd/srd_model.hpp"
 #include "planner/swarm/original.hpp"
 #include "planner/swarm/proposed.hpp"
 #include "tests/bench/job.hpp"
+#include "tests/support/painted_between.hpp"
 
 namespace footlight::bench {
 namespace {
@@ -204,6 +206,21 @@ std::shared_ptr<const planner::collective::SocialCrowd> make_collective(const Mo
   return {both, &both->crowd};
 }
 
+/// A stroke for each block, through the other one. People stand nearer to each other than cells of the floor.
+std::shared_ptr<const planner::PaintedModel> make_painted(const MotionTask& task) {
+  struct Both {
+    planner::PaintedScene scene;
+    planner::PaintedModel model;
+    Both(const MotionTask& of, const planner::Ways& cells)
+        : scene(planner::test::painted_between(of, true, &cells)), model(of, {}, scene) {}
+  };
+  const Grid& floor = task.floor->ways().grid();
+  Stage fine;
+  fine.grid = *Grid::make(GridKind::square, 2 * floor.columns(), 2 * floor.rows(), floor.pitch_m() / 2);
+  const auto both = std::make_shared<const Both>(task, planner::Ways(fine, fine.clearance_m / 2));
+  return {both, &both->model};
+}
+
 }  // namespace
 
 void register_motion(const Effort& effort) {
@@ -213,6 +230,7 @@ void register_motion(const Effort& effort) {
   add_model<OriginalSwarm>(effort, "swarm, original", 0.01, true, make_swarm<OriginalSwarm>);
   add_model<planner::srd::SrdModel>(effort, "srd", 1.0, false, make_srd);
   add_model<planner::collective::SocialCrowd>(effort, "collective", 1.5, true, make_collective);
+  add_model<planner::PaintedModel>(effort, "painted", 1.2, true, make_painted);
 }
 
 }  // namespace footlight::bench

@@ -59,14 +59,16 @@ inline Stroke straight_stroke(const PaintedScene& scene, const std::vector<Point
 /// What a painting would say that leads the people of a task to its places: a shape where those of a group stand, a
 /// shape where their places are. Everybody stands, and shall stand, on a cell of her own.
 /// @param strokes a straight one from the one to the other; else people find their way
-inline PaintedScene painted_between(const MotionTask& task, bool strokes, int resolution = 128) {
+/// @param cells on which people stand; nothing: those of the task's floor
+inline PaintedScene painted_between(const MotionTask& task, bool strokes, const Ways* cells = nullptr) {
+  constexpr int kResolution = 128;
   PaintedScene out;
-  out.ways.emplace(task.floor->ways());
+  out.ways.emplace(cells != nullptr ? *cells : task.floor->ways());
   const Grid& grid = out.ways->grid();
   const double edge = grid.pitch_m() / 2;
   const Point low = task.floor->low() - Point{edge, edge};
   const Point high = task.floor->high() + Point{edge, edge};
-  out.floor = {{low.x, high.y}, std::max(high.x - low.x, high.y - low.y) / resolution};
+  out.floor = {{low.x, high.y}, std::max(high.x - low.x, high.y - low.y) / kResolution};
   out.width = static_cast<int>(std::ceil((high.x - low.x) / out.floor.pixel_m - 1e-9));
   out.height = static_cast<int>(std::ceil((high.y - low.y) / out.floor.pixel_m - 1e-9));
   out.background = out.blocked = PixelSet(out.width, out.height);
