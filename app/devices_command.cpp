@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,7 @@
 #include "config/nearest.hpp"
 #include "config/quantity.hpp"
 #include "core/clock.hpp"
+#include "core/patch.hpp"
 
 namespace footlight::app {
 namespace {
@@ -38,6 +40,7 @@ struct Options {
   int from = 1;
   int to = 1;
   bool off = false;
+  bool write = false;
 };
 
 template <class Number>
@@ -210,6 +213,38 @@ int health(Session& session, const Options& options) {
   return 0;
 }
 
+int patch(Session& session, const Options& options) {
+  auto bus = DeviceBus::open(session, options.choice);
+  if (!bus) return session.fail(bus.error());
+  const auto addresses = addresses_of(**bus, options);
+  if (!addresses) return session.fail(addresses.error());
+  std::map<std::uint16_t, std::uint32_t> wanted;
+  for (const drivers::NodeAddress& node : (*bus)->nodes()) {
+    wanted[node.address] = patch_check((*bus)->rig().nodes[node.node.at()]);
+  }
+  for (const std::uint16_t address : *addresses) {
+    if (!options.write || wanted.contains(address)) continue;
+    return session.fail(input_error(fmt::format(
+        "--write: the rig has no node at address {} of bus \"{}\", so nobody knows its patch (--addresses of the rig's "
+        "nodes, and the bus by its name)",
+        address, (*bus)->bus().name)));
+  }
+  BusService service((*bus)->driver(), (*bus)->nodes());
+  service.ask_patches(*addresses, options.write ? wanted : std::map<std::uint16_t, std::uint32_t>{});
+  if (auto done = (*bus)->run(session, service, "patch"); !done) return session.fail(done.error());
+  std::vector<NodePatch> patches;
+  for (const std::uint16_t address : *addresses) {
+    NodePatch& node = patches.emplace_back();
+    node.address = address;
+    if (const auto kept = service.kept().find(address); kept != service.kept().end()) node.kept = kept->second;
+    if (const auto check = wanted.find(address); check != wanted.end()) node.wanted = check->second;
+  }
+  session.print(session.json ? patch_json(**bus, patches) : patch_text(**bus, patches));
+  const bool all = std::ranges::all_of(patches, &NodePatch::same);
+  return all ? 0
+             : session.fail(device_error("bus \"" + (*bus)->bus().name + "\": not every node keeps the rig's patch"));
+}
+
 int test(Session& session, const Options& options) {
   const auto duration = config::parse_quantity(options.duration, config::Dimension::time);
   if (!duration.value || *duration.value <= 0 || *duration.value > kLongestTestS) {
@@ -301,6 +336,19 @@ void add_devices_command(CLI::App& program, Session& session, Chosen& chosen) {
   command->add_option("BUS", options->choice.bus, "name of a bus of the rig, or a URL")->required();
   command->add_option("--addresses", options->addresses, "only these, as 1-32 (default: the nodes of the rig)");
   add_bus_options(*command, *options);
+
+  command = add_work(*devices, session, chosen, options, "patch", "Which patch the nodes keep, and give them the rig's",
+                     patch);
+  command->add_option("BUS", options->choice.bus, "name of a bus of the rig")->required();
+  command->add_option("--addresses", options->addresses, "only these, as 1-32 (default: the nodes of the rig)");
+  command->add_flag("--write", options->write, "give each its patch first: its lamps are where the rig says");
+  add_bus_options(*command, *options);
+  command->footer(
+      "A marker keeps a check of its patch, that is which of its lamps is on which cell, and at which address, over "
+      "power-off.\n`run --scope live` refuses GO while one has another: a node in the wrong place, or a rig of another "
+      "day.\nWrite it when commissioning has shown that the lamps are where the rig says. Exit status 4 when a node "
+      "has "
+      "not the\nrig's patch.\n");
 
   command = add_work(*devices, session, chosen, options, "test", "How far along the cable nodes answer", test);
   command->add_option("BUS", options->choice.bus, "name of a bus of the rig, or a URL")->required();

@@ -153,6 +153,53 @@ std::string scan_json(const DeviceBus& bus, const std::vector<FoundNode>& found)
   return Json{{"bus", bus.bus().name}, {"found", std::move(list)}}.dump(2);
 }
 
+namespace {
+
+std::string_view said_of(const NodePatch& patch) {
+  if (!patch.kept) return "silent";
+  if (patch.kept->patch == 0) return "none";
+  if (!patch.wanted) return "unknown";
+  return patch.same() ? "same" : "other";
+}
+
+std::string words_of(const NodePatch& patch) {
+  if (!patch.kept) return "does not tell what it keeps";
+  if (patch.kept->patch == 0) return "no patch";
+  if (!patch.wanted) return fmt::format("patch 0x{:08X}; the rig has no such node", patch.kept->patch);
+  if (patch.same()) return "the rig's patch";
+  return fmt::format("another patch: 0x{:08X}, the rig's is 0x{:08X}", patch.kept->patch, *patch.wanted);
+}
+
+}  // namespace
+
+std::string patch_text(const DeviceBus& bus, const std::vector<NodePatch>& patches) {
+  std::string text;
+  for (const NodePatch& patch : patches) {
+    text += fmt::format("{:>3}  {:<20} {}", patch.address, bus.name_of(patch.address), words_of(patch));
+    if (patch.kept && patch.kept->plan != 0) text += fmt::format("; plan 0x{:08X}", patch.kept->plan);
+    text += '\n';
+  }
+  return text + fmt::format("{} of {} nodes keep the rig's patch", std::ranges::count_if(patches, &NodePatch::same),
+                            patches.size());
+}
+
+std::string patch_json(const DeviceBus& bus, const std::vector<NodePatch>& patches) {
+  const auto check = [](bool there, std::uint32_t value) {
+    return there && value != 0 ? Json(fmt::format("0x{:08X}", value)) : Json(nullptr);
+  };
+  Json list = Json::array();
+  for (const NodePatch& patch : patches) {
+    const drivers::KeptChecks kept = patch.kept.value_or(drivers::KeptChecks{});
+    list.push_back({{"address", patch.address},
+                    {"node", bus.name_of(patch.address)},
+                    {"is", said_of(patch)},
+                    {"patch", check(patch.kept.has_value(), kept.patch)},
+                    {"rig", check(patch.wanted.has_value(), patch.wanted.value_or(0))},
+                    {"plan", check(patch.kept.has_value(), kept.plan)}});
+  }
+  return Json{{"bus", bus.bus().name}, {"nodes", std::move(list)}}.dump(2);
+}
+
 std::string health_text(const DeviceBus& bus, const std::vector<NodeHealth>& health) {
   std::string text;
   const Instant now = bus.clock().now();

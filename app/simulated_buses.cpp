@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "controller/cue_list.hpp"
+#include "controller/plan_check.hpp"
 #include "core/clock.hpp"
 #include "drivers/registry.hpp"
 

@@ -17,6 +17,8 @@ constexpr Duration kHopefulBackoff = milliseconds(100);
 constexpr Duration::rep kHopefulShare = 3;  // and costs at most a quarter of the bus's idle time
 constexpr std::uint8_t kMissesToQuarantine = 3;
 constexpr std::uint8_t kOffersToMiss = 6;  // a node that answers and never shows what it was given is as good as silent
+constexpr Duration kKeepWrong = milliseconds(2000);  // until a node that keeps the wrong thing is asked again
+constexpr std::uint8_t kPlanTold = 8;  // times that a node is told of the plan and still keeps another one
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr std::uint8_t kStateShowing = 1;
 constexpr std::uint8_t kStateHold = 2;
@@ -71,6 +73,9 @@ void BusLoop::on_event(const drivers::DeviceEvent& event) {
     case Kind::content:
       node->misses = 0;
       on_content(event);
+      break;
+    case Kind::keeps:
+      on_keeps(*node, event.kept);
       break;
     case Kind::bus_down:
     case Kind::bus_up:
@@ -175,6 +180,35 @@ void BusLoop::quarantine(NodeState& node) noexcept {
   node.ask_at = now_ + node.backoff;
 }
 
+void BusLoop::on_keeps(NodeState& node, const drivers::KeptChecks& kept) noexcept {
+  const WantedChecks& wanted = schedule_->checks();
+  const std::size_t n = node.address.node.at();
+  node.keep_asks = 0;
+  if (kept.plan != wanted.plan) {
+    plan_told_ = false;  // it has missed the word; others may have, too
+    const bool missed = ++node.other_plans < kPlanTold;
+    node.keep_at = missed ? now_ : now_ + kKeepWrong;
+    if (missed) return;
+    node.other_plans = kPlanTold;
+    node.keeps = Keeps::other_plan;
+    return;
+  }
+  const bool same = n >= wanted.patches.size() || kept.patch == wanted.patches[n];
+  node.keeps = same ? Keeps::same : kept.patch == 0 ? Keeps::no_patch : Keeps::other_patch;
+  node.other_plans = 0;
+  node.keep_at = now_ + kKeepWrong;
+}
+
+void BusLoop::forget_checks() noexcept {
+  plan_told_ = false;
+  for (NodeState& node : nodes_) {
+    node.keeps = Keeps::unknown;
+    node.keep_asks = 0;
+    node.other_plans = 0;
+    node.keep_at = now_;
+  }
+}
+
 bool BusLoop::hopeful(const NodeState& node) const noexcept { return now_ - node.silent_since < kHopeful; }
 
 /// A node that has answered a moment ago is more likely to be misheard than dead: a bad line takes many answers in a
@@ -197,6 +231,9 @@ void BusLoop::on_boot(NodeState& node) noexcept {
   node.in_flight = false;
   node.pending = kNone;
   node.offered = kNone;
+  node.keeps = Keeps::unknown;
+  node.keep_asks = 0;
+  node.other_plans = 0;
   if (node.switch_on.stagger.count() > 0 && node.turn <= now_) {
     // Its supply may have been off: then all of its nodes come back at the same time.
     Instant& next = next_turn_[node.switch_on.supply];

@@ -44,6 +44,7 @@ BusLoop::BusLoop(const CueSchedule& schedule, std::vector<drivers::NodeAddress> 
     urgent_[i] = true;
   }
   content_time_ = driver.content_time();
+  kept_time_ = driver.kept_time();
   sync_time_time_ = driver.sync_time_time();
   worn_ = worn_in(schedule);
 }
@@ -123,6 +124,7 @@ Instant BusLoop::wish(Instant driver_wish) const noexcept {
     if (node.misses > 0 && !can_.pushes_status) consider(node.ask_at);
     if (node.rest.count() > 0) consider(node.rests_until);
     consider(node.turn);
+    if (can_.keeps_checks && wants_check(node)) consider(node.keep_at);
   }
   if (refused_) consider(now_ + kRetryBusy);
   return earliest;
@@ -212,6 +214,7 @@ void BusLoop::go_over(std::size_t k) noexcept {
     urgent_[i] = true;
   }
   driver_.take_plan(schedule_->plan_byte());
+  forget_checks();
   const std::size_t old = current_;
   for (NodeState& node : nodes_) {
     const bool preloaded = node.stale || (node.offered == next_ && next_ != current_);
@@ -284,7 +287,8 @@ std::vector<NodeIndex> BusLoop::quarantined() const {
 Duration BusLoop::notice(const CueSchedule& schedule, std::size_t from, std::size_t to) const noexcept {
   if (can_.sequenced_latch) {
     // What is on the wire at the GO ends, then the latch takes its time.
-    return latch_time_ + std::max({status_time_, heartbeat_time_, upload_time_, preload_time_[kChannelsPerNode]});
+    return latch_time_ +
+           std::max({status_time_, heartbeat_time_, upload_time_, preload_time_[kChannelsPerNode], kept_time_});
   }
   Duration sum{};
   for (const NodeState& node : nodes_) {

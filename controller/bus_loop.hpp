@@ -85,21 +85,33 @@ class BusLoop final : private drivers::EventSink {
   [[nodiscard]] std::vector<NodeIndex> quarantined() const;
   /// Nodes that are not confirmed to show what they should now, those in quarantine among them. O(nodes)
   [[nodiscard]] std::size_t unconfirmed() const noexcept;
+  /// What a node keeps of plan and patch, as it has said itself since it was told of the plan.
+  enum class Keeps : std::uint8_t {
+    unknown,      ///< not asked, or no answer yet
+    same,         ///< both are the show's
+    other_plan,   ///< it has not heard of this plan
+    other_patch,  ///< its lamps are those of another patch, or of another node
+    no_patch,     ///< it was never commissioned
+    untold,       ///< it cannot tell
+  };
   /// What is known of a node.
   struct NodeStanding {
     NodeIndex node;
     bool right = false;        ///< confirmed to show what it should now
     bool silent = false;       ///< it has not answered what it was asked last
     bool quarantined = false;  ///< asked only from time to time
+    Keeps keeps = Keeps::unknown;
   };
   [[nodiscard]] std::size_t nodes() const noexcept { return nodes_.size(); }
   /// @param position of the node on this bus, < nodes()
   [[nodiscard]] NodeStanding standing(std::size_t position) const noexcept {
     const NodeState& node = nodes_[position];
-    return {node.address.node, node.right, node.misses > 0, node.quarantined};
+    return {node.address.node, node.right, node.misses > 0, node.quarantined, node.keeps};
   }
   /// False: what its nodes show is taken for granted once it was sent.
   [[nodiscard]] bool verifies() const noexcept { return can_.readback; }
+  /// False: its nodes keep nothing of plan and patch.
+  [[nodiscard]] bool keeps_checks() const noexcept { return can_.keeps_checks; }
   /// How late the last bit of each latch left, as far as the loop can know.
   [[nodiscard]] const Lateness& lateness() const noexcept { return lateness_; }
   /// How long before a switch of unknown instant (a GO) this bus has to know it, so that its latch is not late.
@@ -114,7 +126,7 @@ class BusLoop final : private drivers::EventSink {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  enum class Operation : std::uint8_t { none, latch, heartbeat, upload, ask, preload, content };
+  enum class Operation : std::uint8_t { none, latch, heartbeat, upload, ask, preload, content, keep };
   /// A wearable of this bus, and what its node is known to hold for it.
   struct WornState {
     std::size_t index = 0;     ///< in the schedule's contents
@@ -147,6 +159,10 @@ class BusLoop final : private drivers::EventSink {
     Duration rest{};              ///< the last one; doubled while it goes on
     SwitchOn switch_on;
     Instant turn;  ///< it may be lit from then on
+    Keeps keeps = Keeps::unknown;
+    std::uint8_t keep_asks = 0;    ///< since it was told anything, without an answer
+    std::uint8_t other_plans = 0;  ///< times that it has told another plan
+    Instant keep_at;               ///< not asked before
   };
 
   [[nodiscard]] std::vector<WornState> worn_in(const CueSchedule& schedule) const;
@@ -210,6 +226,10 @@ class BusLoop final : private drivers::EventSink {
   bool send_content() noexcept;
   bool send_content(WornState& worn, std::size_t k) noexcept;
   void on_content(const drivers::DeviceEvent& event) noexcept;
+  bool check_plan() noexcept;
+  [[nodiscard]] static bool wants_check(const NodeState& node) noexcept;
+  void on_keeps(NodeState& node, const drivers::KeptChecks& kept) noexcept;
+  void forget_checks() noexcept;
   void follow_time() noexcept;
   bool latch_current() noexcept;
 
@@ -255,13 +275,15 @@ class BusLoop final : private drivers::EventSink {
   Operation under_way_ = Operation::none;
   Instant since_;
   Instant line_free_;  ///< estimate, for wires with a queue
-  std::array<Duration, 7> longest_{};
+  std::array<Duration, 8> longest_{};
 
   std::vector<Instant> next_turn_;  ///< of each supply: of its next node that boots
 
   std::vector<WornState> worn_;
   std::size_t sent_content_ = kNone;  ///< switch of the content under way
   Duration content_time_{};
+  Duration kept_time_{};
+  bool plan_told_ = false;  ///< to all nodes, as far as is known
   Duration sync_time_time_{};
   bool goes_ = false;  ///< show time goes on
   Instant followed_at_;

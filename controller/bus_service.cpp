@@ -127,6 +127,18 @@ void BusService::ask_health(const std::vector<std::uint16_t>& addresses) {
   phase_ = Phase::asking;
 }
 
+void BusService::ask_patches(const std::vector<std::uint16_t>& addresses,
+                             const std::map<std::uint16_t, std::uint32_t>& written) {
+  if (refuse(Task::patch)) return;
+  kept_.clear();
+  for (const std::uint16_t address : addresses) {
+    Question question{Task::patch, address};
+    if (const auto patch = written.find(address); patch != written.end()) question.patch = patch->second;
+    questions_.push_back(question);
+  }
+  phase_ = Phase::asking;
+}
+
 void BusService::test(const std::vector<std::uint16_t>& addresses, Duration duration) {
   if (refuse(Task::probe)) return;
   cable_ = addresses;
@@ -164,6 +176,8 @@ SendStatus BusService::send(const Question& question) {
     case Task::clock:
       if (question.address == kEverybody) return driver_.sync_time(now_ - kStart, 1, now_);
       return driver_.ask_clock(question.address, now_);
+    case Task::patch:
+      return driver_.ask_patch(question.address, question.patch, now_);
   }
   return SendStatus::down;
 }
@@ -218,6 +232,7 @@ void BusService::on_answer(const ServiceAnswer& answer) {
     node.last_seen = now_;
     if (answers_.size() == 1) node.latency.add(now_ - asked_at_);
     if (!answer.health.empty()) node.values = answer.health;
+    if (under_way_->task == Task::patch) kept_[under_way_->address] = answer.kept;
   }
 }
 
@@ -271,7 +286,7 @@ void BusService::conclude_question() {
   }
   const std::string who = "the node of address " + std::to_string(question.address);
   const std::string task(to_text(question.task));
-  if (question.task == Task::health) return;  // its record says so
+  if (question.task == Task::health || question.task == Task::patch) return;  // its record says so
   // Perhaps it has moved, and its word for it was lost: what is at the new address tells.
   if (question.task == Task::set_address && !refused && !counts_after_restart_) return;
   if (refused) {

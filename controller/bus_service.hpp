@@ -53,6 +53,8 @@ class BusService final : private drivers::EventSink {
   /// Battery and the like; where nodes keep time, they are told it first and asked for it last, and how far their
   /// clocks are off is among the values.
   void ask_health(const std::vector<std::uint16_t>& addresses);
+  /// What nodes keep of plan and patch. @param written the patch check that each is given first; empty: none
+  void ask_patches(const std::vector<std::uint16_t>& addresses, const std::map<std::uint16_t, std::uint32_t>& written);
   /// Asks the nodes in turn, in the order given, until `duration` is over.
   void test(const std::vector<std::uint16_t>& addresses, Duration duration);
 
@@ -67,6 +69,8 @@ class BusService final : private drivers::EventSink {
   [[nodiscard]] const std::vector<FoundNode>& found() const { return found_; }
   /// In the order in which the nodes were first asked.
   [[nodiscard]] const std::vector<NodeHealth>& health() const { return health_; }
+  /// By address, of those that have told.
+  [[nodiscard]] const std::map<std::uint16_t, drivers::KeptChecks>& kept() const { return kept_; }
 
  private:
   struct Question {
@@ -76,6 +80,7 @@ class BusService final : private drivers::EventSink {
     bool on = false;
     std::uint16_t to = 0;
     std::optional<std::uint32_t> unique_id{};
+    std::optional<std::uint32_t> patch{};
     int again = 0;  ///< times that it was asked before: its answer was garbled, or did not come
   };
   enum class Phase { idle, sweep, rounds, asking, testing, before_move, move, after_move };
@@ -114,6 +119,7 @@ class BusService final : private drivers::EventSink {
   std::optional<Error> failure_;
   std::vector<FoundNode> found_;
   std::vector<NodeHealth> health_;
+  std::map<std::uint16_t, drivers::KeptChecks> kept_;
 };
 
 }  // namespace footlight::controller

@@ -15,9 +15,11 @@ constexpr Duration kTimeSync = milliseconds(1000);
 constexpr Duration kLateness = milliseconds(1);
 constexpr Duration kRetryDown = milliseconds(100);
 constexpr Duration kAnswerWindow =
-    milliseconds(15);               // turnaround and margin of nodes that answer a latch by themselves
-constexpr double kLeastWire = 0.1;  // heartbeats leave so much, in any case
-constexpr double kRepeats = 1.4;    // room for lost preloads: 1 / (1 - 30 %)
+    milliseconds(15);  // turnaround and margin of nodes that answer a latch by themselves
+constexpr Duration kKeepAgain = milliseconds(500);
+constexpr std::uint8_t kKeepAsks = 5;  // whoever leaves so many open does not know the question
+constexpr double kLeastWire = 0.1;     // heartbeats leave so much, in any case
+constexpr double kRepeats = 1.4;       // room for lost preloads: 1 / (1 - 30 %)
 
 }  // namespace
 
@@ -32,7 +34,7 @@ bool BusLoop::act() noexcept {
   if (in_hurry() && preload_next()) return true;
   // After a death nodes mostly show what they should, and have the looks: a question tells sooner than an upload mends.
   return verify(true) || upload(true) || verify(false) || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
-         ask_quarantined(false) || send_content() || refresh() || upload(false);
+         ask_quarantined(false) || send_content() || check_plan() || refresh() || upload(false);
 }
 
 bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration time) noexcept {
@@ -286,6 +288,28 @@ void BusLoop::on_content(const drivers::DeviceEvent& event) noexcept {
 
 // ---- idle time
 
+bool BusLoop::wants_check(const NodeState& node) noexcept {
+  return node.keeps != Keeps::same && node.keeps != Keeps::untold;
+}
+
+/// All nodes are told which plan leads them, then each that shows what it should is asked, once, what it keeps.
+bool BusLoop::check_plan() noexcept {
+  if (!can_.keeps_checks || schedule_->checks().plan == 0) return false;
+  if (!fits_before(time_of(Operation::keep), preload_from())) return false;
+  for (NodeState& node : nodes_) {
+    if (!wants_check(node) || !node.right || node.quarantined || rests(node) || now_ < node.keep_at) continue;
+    if (!plan_told_) {
+      plan_told_ = took(driver_.tell_plan(schedule_->checks().plan, now_), Operation::keep, upload_time_);
+      return plan_told_;
+    }
+    if (!took(driver_.ask_kept(node.address, now_), Operation::keep, kept_time_)) return false;
+    node.keep_at = now_ + kKeepAgain;
+    if (++node.keep_asks > kKeepAsks) node.keeps = Keeps::untold;
+    return true;
+  }
+  return false;
+}
+
 bool BusLoop::ask_quarantined(bool hopeful_only) noexcept {
   // Who answers a latch by itself needs no question.
   if (can_.pushes_status || !fits(std::max(time_of(Operation::ask), time_of(Operation::preload)))) return false;
@@ -340,6 +364,7 @@ Duration BusLoop::time_of(Operation operation) const noexcept {
   if (operation == Operation::heartbeat) budget = heartbeat_time_;
   if (operation == Operation::upload) budget = upload_time_;
   if (operation == Operation::content) budget = content_time_;
+  if (operation == Operation::keep) budget = std::max(kept_time_, upload_time_);
   return std::max(budget, longest_[static_cast<std::size_t>(operation)]);
 }
 

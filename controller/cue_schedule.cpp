@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 
 #include "controller/bus_budget.hpp"
@@ -12,8 +11,10 @@
 #include "controller/lamp.hpp"
 #include "controller/look_book.hpp"
 #include "controller/patterns.hpp"
+#include "controller/plan_check.hpp"
 #include "core/check.hpp"
 #include "core/diagnostic.hpp"
+#include "core/patch.hpp"
 
 namespace footlight::controller {
 
@@ -371,23 +372,6 @@ const drivers::WearableContent& CueSchedule::content(std::size_t k, std::size_t 
   return reset_of(k).contents.at((k - switches_.size()) % kMostResetSwitches * contents_.worn.size() + w);
 }
 
-std::uint8_t plan_byte_of(const Plan& plan) {
-  unsigned byte = 0;
-  const std::string& hash = plan.show_hash;
-  if (hash.size() >= 2) {
-    const auto [end, error] = std::from_chars(hash.data() + hash.size() - 2, hash.data() + hash.size(), byte, 16);
-    if (error == std::errc{} && end == hash.data() + hash.size()) return static_cast<std::uint8_t>(byte);
-  }
-  std::uint64_t sum = 0xCBF29CE484222325ULL;  // FNV-1a over cells and times
-  for (const auto& track : plan.tracks) {
-    for (const Mark& mark : track) {
-      sum = (sum ^ mark.cell.value()) * 0x100000001B3ULL;
-      sum = (sum ^ static_cast<std::uint64_t>(mark.time.time_since_epoch().count())) * 0x100000001B3ULL;
-    }
-  }
-  return static_cast<std::uint8_t>(sum >> 56U);
-}
-
 Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                    const std::vector<std::unique_ptr<drivers::Driver>>& drivers) {
   FL_CHECK(drivers.size() == rig.buses.size());
@@ -412,6 +396,9 @@ Result<CueSchedule> build_schedule(const Show& show, const Plan& plan, const Rig
   for (const CuePlay& play : plays) gaps.push_back(play.gap_after.value_or(kShortestHold));
   const std::vector<BusNeed> needs = bus_needs(*schedule, rig, drivers, gaps);
   if (!std::ranges::all_of(needs, &BusNeed::fits)) return over_budget(needs, *schedule, rig, show);
+  WantedChecks checks{plan_check_of(plan)};
+  for (const Node& node : rig.nodes) checks.patches.push_back(patch_check(node));
+  schedule->set_checks(std::move(checks));
   return schedule;
 }
 

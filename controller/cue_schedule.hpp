@@ -65,6 +65,12 @@ struct LookNumbers {
   LookIndex quiet = kDark;            ///< kQuiet; kDark: nobody can be muted
 };
 
+/// What nodes have to keep for a plan to be theirs; plan 0: nobody asks.
+struct WantedChecks {
+  std::uint32_t plan = 0;
+  std::vector<std::uint32_t> patches{};  ///< patch_check of every node of the rig
+};
+
 /// What every lamp and wearable shows from switch to switch: a function of show time alone.
 class CueSchedule {
  public:
@@ -106,6 +112,8 @@ class CueSchedule {
   /// @param most looks besides dark that every marker of the rig knows
   void add_quiet(std::size_t most);
   [[nodiscard]] std::uint8_t plan_byte() const { return plan_byte_; }
+  [[nodiscard]] const WantedChecks& checks() const { return checks_; }
+  void set_checks(WantedChecks checks) { checks_ = std::move(checks); }
   [[nodiscard]] LampConfusion confusion() const { return confusion_; }
   /// What wearables tell besides their looks; empty unless it was set.
   [[nodiscard]] const WearableContents& contents() const { return contents_; }
@@ -143,16 +151,13 @@ class CueSchedule {
   std::vector<LookIndex> table_;  ///< switches x nodes x 32
   std::uint8_t plan_byte_ = 0;
   LampConfusion confusion_;
+  WantedChecks checks_;
   WearableContents contents_;
   LookNumbers numbers_;
   std::unique_ptr<Resets> resets_ = std::make_unique<Resets>();
   std::unique_ptr<Muted> muted_ = std::make_unique<Muted>();
   std::vector<SupplyLoad> supplies_;
 };
-
-/// The byte of a plan that all frames of a show carry: the last two digits of its hash; a sum over its marks where it
-/// has none. Drivers are made with it.
-[[nodiscard]] std::uint8_t plan_byte_of(const Plan& plan);
 
 /// Latch sequence of a switch on every wire, 1..240: the same after a restart of the controller.
 [[nodiscard]] constexpr drivers::Sequence sequence_of(std::size_t k) {

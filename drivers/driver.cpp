@@ -15,6 +15,8 @@ std::string_view to_text(Task task) {
       return "health";
     case Task::clock:
       return "clock";
+    case Task::patch:
+      return "patch";
   }
   return "probe";
 }

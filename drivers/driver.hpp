@@ -36,6 +36,15 @@ struct NodeAddress {
   [[nodiscard]] std::uint8_t unit() const { return static_cast<std::uint8_t>(address); }
 };
 
+/// What a node keeps over power-off of the plan that it was told of last, and of the patch that it was commissioned
+/// with (core/rig.hpp, patch_check); 0: none.
+struct KeptChecks {
+  std::uint32_t plan = 0;
+  std::uint32_t patch = 0;
+
+  friend bool operator==(const KeptChecks&, const KeptChecks&) = default;
+};
+
 /// What has become of one node or of the bus, as told by the wire.
 struct DeviceEvent {
   enum class Kind {
@@ -47,6 +56,7 @@ struct DeviceEvent {
                 ///< heartbeat
     rejected,   ///< the device refused (Modbus exception, EMCY); `detail` is its code
     content,    ///< a wearable has taken the content of channel `detail` for latch `sequence`
+    keeps,      ///< the node keeps `kept`
     bus_down,   ///< on CAN `detail` is the CanState
     bus_up,
   };
@@ -64,10 +74,11 @@ struct DeviceEvent {
   std::uint16_t boots = 0;
   std::uint16_t detail = 0;
   Again again = Again::soon;
+  KeptChecks kept{};
 };
 
 /// What a technician may ask of a device.
-enum class Task : std::uint8_t { probe, identify, set_address, health, clock };
+enum class Task : std::uint8_t { probe, identify, set_address, health, clock, patch };
 
 [[nodiscard]] std::string_view to_text(Task task);
 
@@ -103,6 +114,7 @@ struct ServiceAnswer {
   int detail = 0;
   Identity identity;
   std::vector<HealthValue> health;
+  KeptChecks kept{};  ///< patch
 };
 
 /// What a wearable tells its wearer besides its look: where the next walk leads, and when it begins.
@@ -135,6 +147,7 @@ struct Capabilities {
   int looks = 254;              ///< entries that the device's look table has besides dark
   bool contents = false;        ///< wearables show direction, distance and count-down
   bool keeps_time = false;      ///< nodes follow the show's time
+  bool keeps_checks = false;    ///< nodes keep checks of plan and patch
 };
 
 /// A marker language on one bus: encodes what the bus loop wants into frames, decodes what comes back. Owned and called
@@ -199,6 +212,17 @@ class Driver {
   }
   [[nodiscard]] virtual Duration sync_time_time() const { return {}; }
 
+  // Checks: only where the capability is given.
+  /// Tells all nodes which plan they are led by; nobody answers. Takes as long as an upload.
+  virtual SendStatus tell_plan(std::uint32_t /*check*/, Instant /*now*/) {
+    FL_CHECK(false && "a language whose nodes keep checks");
+  }
+  /// Told by `keeps`. A node that does not answer is not missed for it: it may not know the question.
+  virtual SendStatus ask_kept(const NodeAddress& /*node*/, Instant /*now*/) {
+    FL_CHECK(false && "a language whose nodes keep checks");
+  }
+  [[nodiscard]] virtual Duration kept_time() const { return {}; }
+
   // For technicians: an address need not be in the rig. What comes of it is told by `EventSink::on_answer`.
   /// Why this language, or the profile of its devices, cannot do that; empty: it can. To ask all the same is a
   /// programmer error.
@@ -217,6 +241,10 @@ class Driver {
   }
   virtual SendStatus ask_health(std::uint16_t /*address*/, Instant /*now*/) {
     FL_CHECK(false && "a language that can tell health");
+  }
+  /// What does it keep? @param patch is written first
+  virtual SendStatus ask_patch(std::uint16_t /*address*/, std::optional<std::uint32_t> /*patch*/, Instant /*now*/) {
+    FL_CHECK(false && "a language whose nodes keep checks");
   }
   /// How far is its clock from the time that `sync_time` has told last? Told as health.
   virtual SendStatus ask_clock(std::uint16_t /*address*/, Instant /*now*/) {

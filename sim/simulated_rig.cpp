@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/check.hpp"
+#include "core/patch.hpp"
 #include "core/rng.hpp"
 #include "sim/can_bus.hpp"
 #include "sim/dmx_bus.hpp"
@@ -48,12 +49,19 @@ std::unique_ptr<SimulatedBus> make_bus(const Bus& bus, const Surroundings& surro
   FL_CHECK(false);
 }
 
-NodeModel model_of(const Node& node, const Bus& bus) {
+NodeModel bare_model_of(const Node& node, const Bus& bus) {
   const auto channels = static_cast<int>(node.channels.size());
   if (bus.kind == BusKind::dmx || bus.outputs) return {channels, false, kDark};
   if (!bus.profile) return {channels, true};
   const bool ours = bus.profile->heartbeat_register || bus.profile->status_register;
   return {channels, bus.profile->heartbeat_register.has_value(), ours ? kNoGuidance : kDark};
+}
+
+/// As it comes from commissioning: with the patch of its rig.
+NodeModel model_of(const Node& node, const Bus& bus) {
+  NodeModel model = bare_model_of(node, bus);
+  model.keep_patch(patch_check(node));
+  return model;
 }
 
 std::vector<NodeIndex> draw_dead(std::size_t nodes, int wanted, Rng rng) {

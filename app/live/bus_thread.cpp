@@ -12,6 +12,26 @@ constexpr Duration kTroubled = milliseconds(20);       // a wire that says again
 constexpr Duration kCount = milliseconds(100);         // counters are told so often
 constexpr Duration kHandedOverLate = microseconds(1);  // what is due a moment from now is as good as due
 
+std::uint32_t flag_of(controller::BusLoop::Keeps keeps, bool can_tell) {
+  using Keeps = controller::BusLoop::Keeps;
+  if (!can_tell) return NodeBoard::kNoChecks;
+  switch (keeps) {
+    case Keeps::unknown:
+      return 0;
+    case Keeps::same:
+      return NodeBoard::kSameChecks;
+    case Keeps::other_plan:
+      return NodeBoard::kOtherPlan;
+    case Keeps::other_patch:
+      return NodeBoard::kOtherPatch;
+    case Keeps::no_patch:
+      return NodeBoard::kNoPatch;
+    case Keeps::untold:
+      return NodeBoard::kNoChecks;
+  }
+  return 0;
+}
+
 }  // namespace
 
 BusThread::BusThread(controller::BusLoop& loop, std::function<int()> poll_handle, const SharedTarget& target,
@@ -114,7 +134,8 @@ void BusThread::tell_board(Instant now) noexcept {
     NodeBoard::View view = board_->at(node.node.at());
     if (node.right) view.shown = static_cast<std::uint32_t>(loop_.lit());
     view.flags = (node.right ? NodeBoard::kRight : 0U) | (node.silent ? NodeBoard::kSilent : 0U) |
-                 (node.quarantined ? NodeBoard::kQuarantined : 0U) | (loop_.verifies() ? 0U : NodeBoard::kUnverified);
+                 (node.quarantined ? NodeBoard::kQuarantined : 0U) | (loop_.verifies() ? 0U : NodeBoard::kUnverified) |
+                 flag_of(node.keeps, loop_.keeps_checks());
     board_->put(node.node.at(), view);
   }
   quarantined_.store(quarantined, std::memory_order_relaxed);

@@ -21,6 +21,7 @@
 #include "app/wire_log/logged_ports.hpp"
 #include "controller/bus_budget.hpp"
 #include "controller/lateness.hpp"
+#include "controller/plan_check.hpp"
 #include "controller/rehearsal.hpp"
 #include "controller/stands.hpp"
 #include "controller/tempo_limit.hpp"

@@ -19,6 +19,11 @@ class NodeBoard {
     kSilent = 2,       ///< it has not answered what it was asked last
     kQuarantined = 4,  ///< asked only from time to time
     kUnverified = 8,   ///< such a device cannot be read back
+    kSameChecks = 16,  ///< it keeps the checks of this plan and patch
+    kOtherPlan = 32,
+    kOtherPatch = 64,
+    kNoPatch = 128,   ///< it was never commissioned
+    kNoChecks = 256,  ///< such a device keeps none, or does not know the question
   };
   struct View {
     std::uint32_t shown = kNothingYet;  ///< switch whose looks it has confirmed last

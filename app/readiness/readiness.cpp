@@ -191,11 +191,15 @@ std::string stages_json(const Readiness& readiness) {
       .dump();
 }
 
-std::string silence_text(std::size_t silent_markers, std::size_t markers, const std::vector<std::string>& silent) {
+std::string names_text(const std::vector<std::string>& nodes) {
   std::string names;
-  for (std::size_t i = 0; i < std::min(silent.size(), kNamed); ++i) names += (i > 0 ? ", " : "") + silent[i];
-  if (silent.size() > kNamed) names += fmt::format(" and {} more nodes", silent.size() - kNamed);
-  return fmt::format("{} of {} markers silent: {}", grouped(silent_markers), grouped(markers), names);
+  for (std::size_t i = 0; i < std::min(nodes.size(), kNamed); ++i) names += (i > 0 ? ", " : "") + nodes[i];
+  if (nodes.size() > kNamed) names += fmt::format(" and {} more nodes", nodes.size() - kNamed);
+  return names;
+}
+
+std::string silence_text(std::size_t silent_markers, std::size_t markers, const std::vector<std::string>& silent) {
+  return fmt::format("{} of {} markers silent: {}", grouped(silent_markers), grouped(markers), names_text(silent));
 }
 
 }  // namespace footlight::app

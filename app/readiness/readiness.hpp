@@ -88,6 +88,8 @@ class Readiness {
 [[nodiscard]] std::string stages_text(const Readiness& readiness);
 [[nodiscard]] std::string stages_json(const Readiness& readiness);
 
+/// "left-3, left-4 and 2 more nodes"
+[[nodiscard]] std::string names_text(const std::vector<std::string>& nodes);
 /// "12 of 3,290 markers silent: left-3, left-4 and 2 more nodes". @param silent names of nodes
 [[nodiscard]] std::string silence_text(std::size_t silent_markers, std::size_t markers,
                                        const std::vector<std::string>& silent);

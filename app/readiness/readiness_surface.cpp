@@ -14,6 +14,45 @@ using State = Readiness::State;
 using Phase = controller::Rehearsal::Phase;
 using ResetState = controller::Rehearsal::ResetState;
 
+/// Nodes that answer, by what they keep.
+struct NodesBy {
+  std::size_t same = 0;
+  std::size_t none = 0;
+  std::size_t unknown = 0;
+  std::vector<std::string> other_plan{};
+  std::vector<std::string> other_patch{};
+  std::vector<std::string> no_patch{};
+
+  void count(std::uint32_t flags, const std::string& node) {
+    if ((flags & NodeBoard::kSameChecks) != 0) {
+      ++same;
+    } else if ((flags & NodeBoard::kNoChecks) != 0) {
+      ++none;
+    } else if ((flags & NodeBoard::kOtherPlan) != 0) {
+      other_plan.push_back(node);
+    } else if ((flags & NodeBoard::kOtherPatch) != 0) {
+      other_patch.push_back(node);
+    } else if ((flags & NodeBoard::kNoPatch) != 0) {
+      no_patch.push_back(node);
+    } else if ((flags & (NodeBoard::kSilent | NodeBoard::kQuarantined)) == 0) {
+      ++unknown;
+    }
+  }
+  /// What is wrong; empty: nothing.
+  [[nodiscard]] std::string wrong() const {
+    std::string text;
+    const auto add = [&](const std::vector<std::string>& nodes, std::string_view what, std::string_view hint) {
+      if (nodes.empty()) return;
+      text += fmt::format("{}{}: {} ({})", text.empty() ? "" : "; ", what, names_text(nodes), hint);
+    };
+    add(other_patch, "the patch of another rig or node is on",
+        "is it the node that the rig means? `footlight devices patch --write` when it is");
+    add(no_patch, "no patch is on", "`footlight devices patch --write` when its lamps are where the rig says");
+    add(other_plan, "another plan is on", "does another controller tell it?");
+    return text;
+  }
+};
+
 }  // namespace
 
 ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board, RunDesk& desk,
@@ -79,15 +118,33 @@ void ReadinessSurface::judge_nodes(const DeskView& view) {
       silent_markers += rig_.nodes[n].channels.size();
     }
   }
-  const std::size_t proved = rig_.nodes.size() - silent.size() - unverified;
   const std::string answered = fmt::format("{} nodes answer", rig_.nodes.size() - silent.size());
   readiness_.tell(Stage::roll_call, silent.empty() ? State::success : State::error,
                   silent.empty() ? answered : silence_text(silent_markers, markers_, silent));
-  readiness_.tell(Stage::plan_on_nodes, unverified > 0 ? State::warning : State::success,
-                  fmt::format("{} nodes confirm by sequence and check sum what this plan shows{}", proved,
-                              unverified > 0 ? fmt::format(", {} cannot be read back", unverified) : ""));
+  judge_checks(silent.size(), unverified);
   readiness_.tell(Stage::looks, silent.empty() ? State::success : State::warning,
                   silent.empty() ? "uploaded" : "uploaded, not to who is silent");
+}
+
+/// Whether nodes keep this plan and this patch, as far as they can tell.
+void ReadinessSurface::judge_checks(std::size_t silent, std::size_t unverified) {
+  NodesBy with;
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) with.count(board_.at(n).flags, rig_.nodes[n].name);
+  std::string text = fmt::format("{} nodes confirm by sequence and check sum what this plan shows",
+                                 rig_.nodes.size() - silent - unverified);
+  if (unverified > 0) text += fmt::format(", {} cannot be read back", unverified);
+  const bool untold = with.none > 0;
+  if (with.same > 0) text += fmt::format("; {} keep this plan and patch", with.same);
+  if (untold) text += fmt::format("; {} keep none", with.none);
+  if (with.unknown > 0) text += fmt::format("; {} are asked for theirs", with.unknown);
+  const std::string wrong = with.wrong();
+  if (!wrong.empty()) {
+    readiness_.tell(Stage::plan_on_nodes, State::error, wrong);
+  } else if (with.unknown > 0 && !readiness_.armed()) {
+    readiness_.tell(Stage::plan_on_nodes, State::waiting, std::move(text));
+  } else {
+    readiness_.tell(Stage::plan_on_nodes, unverified > 0 || untold ? State::warning : State::success, std::move(text));
+  }
 }
 
 /// A source that leads has to have been locked before the show; music goes with the show.

@@ -26,6 +26,7 @@ class ReadinessSurface final : public Surface {
  private:
   void add_orders(RunDesk& desk);
   void judge_nodes(const DeskView& view);
+  void judge_checks(std::size_t silent, std::size_t unverified);
   void judge_time(const DeskView& view);
   Result<std::string> start_swap(const std::vector<std::string>& words);
   void follow_swap(RunDesk& desk);

@@ -90,6 +90,10 @@ void CanopenMarker::take_mpdo(const drivers::CanFrame& frame) {
   if (frame.length != 8 || !to_me || data[2] != 0x21) return;
   if (data[1] == 0x00) model_.set_colour(data[3], Colour{data[6], data[5], data[4]});
   if (data[1] == 0x01) model_.set_effect(data[3], data[4], data[5]);
+  if (data[1] == 0x05 && data[3] == 1) {
+    model_.keep_plan(data[4] | (std::uint32_t{data[5]} << 8U) | (std::uint32_t{data[6]} << 16U) |
+                     (std::uint32_t{data[7]} << 24U));
+  }
 }
 
 drivers::CanFrame CanopenMarker::status() const {

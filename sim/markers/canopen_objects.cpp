@@ -21,6 +21,7 @@ constexpr std::uint16_t kEffects = 0x2101;
 constexpr std::uint16_t kStatus = 0x2102;
 constexpr std::uint16_t kChannels = 0x2103;
 constexpr std::uint16_t kIdentify = 0x2104;
+constexpr std::uint16_t kKept = 0x2105;
 constexpr std::uint16_t kOutputs = 0x6200;
 /// Sizes in bytes of 0x2102:1..5.
 constexpr std::array<int, 5> kStatusBytes{1, 1, 2, 2, 2};
@@ -134,6 +135,10 @@ CanopenObjects::Value CanopenObjects::own(std::uint16_t index, std::uint8_t sub)
                       : Value{SdoAbort::no_sub_index};
     case kIdentify:
       return sub == 0 ? Value{SdoAbort::none, 0, 1} : Value{SdoAbort::no_sub_index};
+    case kKept:
+      if (sub == 0) return {SdoAbort::none, 2, 1};
+      if (sub > 2) return Value{SdoAbort::no_sub_index};
+      return {SdoAbort::none, sub == 1 ? model_.plan_check() : model_.patch_check(), 4};
     case kOutputs:
       if (sub == 0) return {SdoAbort::none, static_cast<std::uint32_t>(model_.channels()), 1};
       if (sub > model_.channels()) return Value{SdoAbort::no_sub_index};
@@ -148,7 +153,7 @@ SdoAbort CanopenObjects::write(std::uint16_t index, std::uint8_t sub, std::span<
   std::vector<std::uint8_t> old;
   const SdoAbort there = read(index, sub, old);
   if (there != SdoAbort::none) return there;
-  const bool is_array = index == kColours || index == kEffects || index == kOutputs;
+  const bool is_array = index == kColours || index == kEffects || index == kOutputs || index == kKept;
   if (index != kIdentify && (!is_array || sub == 0)) return SdoAbort::read_only;
   if (bytes.size() != old.size()) return SdoAbort::length;
   const std::uint32_t number = number_of(bytes);
@@ -161,6 +166,8 @@ SdoAbort CanopenObjects::write(std::uint16_t index, std::uint8_t sub, std::span<
   } else if (index == kIdentify) {
     possible = number <= 1;
     if (possible) model_.identify(number == 1, now);
+  } else if (index == kKept) {
+    sub == 1 ? model_.keep_plan(number) : model_.keep_patch(number);
   } else {
     model_.stage(sub - 1, bytes);
   }

@@ -23,6 +23,8 @@ constexpr std::uint8_t kRead = 0x03;
 constexpr std::uint8_t kWriteOne = 0x06;
 constexpr std::uint8_t kWriteSeveral = 0x10;
 constexpr int kStatusRegisters = 6;
+constexpr int kKeptRegisters = 8;
+constexpr int kKeptAfterReaddress = 4;
 constexpr int kMostRead = 125;
 constexpr std::size_t kMostWritten = 123;
 
@@ -223,8 +225,30 @@ std::optional<std::uint16_t> ModbusMarker::holds(int number, Instant now) const 
     return word_at(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), 2 * at);
   }
   if (within(profile_.address_register, 1)) return next_address_;
+  if (within(kept_register(), kKeptRegisters)) return kept_word(number - *kept_register());
   if (auto word = health_word(number)) return word;
   return look_word(number);
+}
+
+/// Our own marker has it behind the registers of its address.
+std::optional<int> ModbusMarker::kept_register() const {
+  if (!profile_.proves_looks() || !profile_.readdress_register) return std::nullopt;
+  return *profile_.readdress_register + kKeptAfterReaddress;
+}
+
+std::uint16_t ModbusMarker::kept_word(int place) const {
+  if (place > 3) return 0;
+  const std::uint32_t check = place < 2 ? model_.plan_check() : model_.patch_check();
+  const bool high = (place % 2 == 0) != profile_.low_word_first;
+  return static_cast<std::uint16_t>(high ? check >> 16U : check & 0xFFFFU);
+}
+
+std::uint8_t ModbusMarker::write_kept(bool patch, const Words& values) {
+  if (values.size() != 2) return kIllegalValue;
+  const std::uint32_t high = values[profile_.low_word_first ? 1 : 0];
+  const std::uint32_t low = values[profile_.low_word_first ? 0 : 1];
+  patch ? model_.keep_patch((high << 16U) | low) : model_.keep_plan((high << 16U) | low);
+  return 0;
 }
 
 std::optional<std::uint16_t> ModbusMarker::look_word(int number) const {
@@ -263,6 +287,9 @@ std::uint8_t ModbusMarker::write(int first, const Words& values, Instant now) {
     if (values.size() != 1 || values[0] > 1) return kIllegalValue;
     model_.identify(values[0] != 0, now);
     return 0;
+  }
+  if (const auto kept = kept_register(); kept && (first == *kept || first == *kept + 2)) {
+    return write_kept(first != *kept, values);
   }
   if (profile_.address_register == first) return values.size() == 1 ? write_address(values[0]) : kIllegalValue;
   if (profile_.readdress_register == first) return write_readdress(values);

@@ -46,6 +46,8 @@ class ModbusMarker {
   [[nodiscard]] std::optional<std::uint16_t> holds(int number, Instant now) const;
   [[nodiscard]] std::optional<std::uint16_t> look_word(int number) const;
   [[nodiscard]] std::optional<std::uint16_t> health_word(int number) const;
+  [[nodiscard]] std::optional<int> kept_register() const;
+  [[nodiscard]] std::uint16_t kept_word(int place) const;
   /// @return exception code, 0 when done
   std::uint8_t write(int first, const Words& values, Instant now);
   std::uint8_t write_preload(const Words& values, Instant now);
@@ -54,6 +56,7 @@ class ModbusMarker {
   std::uint8_t write_look(const Words& values);
   std::optional<std::uint8_t> write_state(int first, const Words& values);
   std::uint8_t write_lead(const Words& values, Instant now);
+  std::uint8_t write_kept(bool patch, const Words& values);
   std::uint8_t write_address(std::uint16_t address);
   std::uint8_t write_readdress(const Words& values);
   [[nodiscard]] std::vector<LookIndex> looks_in(std::span<const std::uint16_t> values, int first_channel) const;

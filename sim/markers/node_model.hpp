@@ -47,7 +47,7 @@ class NodeModel {
   /// @param at_power_on what every channel shows then: NO-GUIDANCE, or a foreign device's own number of dark
   NodeModel(int channels, bool has_lease, LookIndex at_power_on = kNoGuidance);
 
-  /// Everything as at power-on, one more boot.
+  /// Everything as at power-on, one more boot; what is kept is kept.
   void power_on(Instant now);
 
   /// Replaces what was pending; channels that it does not name keep the look that they show.
@@ -105,6 +105,11 @@ class NodeModel {
 
   NodeHealth health;
   [[nodiscard]] Instant powered_on_at() const { return powered_on_at_; }
+  // Kept over power-off: checks of the plan and of the patch, whatever they mean to the controller; 0: none.
+  [[nodiscard]] std::uint32_t plan_check() const { return plan_check_; }
+  [[nodiscard]] std::uint32_t patch_check() const { return patch_check_; }
+  void keep_plan(std::uint32_t check) { plan_check_ = check; }
+  void keep_patch(std::uint32_t check) { patch_check_ = check; }
   /// CRC-16 over the looks shown.
   [[nodiscard]] std::uint16_t crc() const;
   /// Latches that changed what is pending into what is shown, since construction.
@@ -126,6 +131,8 @@ class NodeModel {
   NodeState state_ = NodeState::boot;
   std::uint16_t boots_ = 0;
   std::uint64_t latches_ = 0;
+  std::uint32_t plan_check_ = 0;
+  std::uint32_t patch_check_ = 0;
   Instant powered_on_at_ = kStart;
   Instant renewed_ = kStart;
   Instant identify_until_ = kStart;

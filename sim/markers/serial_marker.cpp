@@ -28,9 +28,12 @@ enum Command : std::uint8_t {
   kWho = 10,
   kAddress = 11,
   kHealth = 12,
-  kLead = 13
+  kLead = 13,
+  kKeep = 14
 };
 
+constexpr std::uint8_t kKeptPlan = 1;
+constexpr std::uint8_t kKeptPatch = 2;
 constexpr std::uint8_t kFirmware = 1;
 constexpr double kFullRate = 32'768;
 
@@ -125,6 +128,7 @@ bool SerialMarker::is_fenced(std::span<const std::uint8_t> payload, Instant now)
     case kStatus:
     case kIdentify:
     case kAddress:
+    case kKeep:
       return payload[3] != 0 && model_.fenced(payload[3], now);
     default:
       return model_.fenced(payload[3], now);
@@ -196,6 +200,9 @@ std::vector<std::uint8_t> SerialMarker::obey(std::span<const std::uint8_t> paylo
       if (body.size() != 6) return drop();
       answer = take_address(payload);
       break;
+    case kKeep:
+      answer = keep(payload);
+      break;
     case kHealth:
       if (!body.empty()) return drop();
       answer = health(plan, now);
@@ -256,6 +263,18 @@ std::vector<std::uint8_t> SerialMarker::health(std::uint8_t plan_byte, Instant n
   return frame_of({kFromNode, kHealth, address_, plan_byte, 0, static_cast<std::uint8_t>(health.battery_percent),
                    byte_of(supply, 0), byte_of(supply, 1), static_cast<std::uint8_t>(health.temperature_c + 100),
                    byte_of(uptime, 0), byte_of(uptime, 1), byte_of(uptime, 2), byte_of(uptime, 3)});
+}
+
+std::vector<std::uint8_t> SerialMarker::keep(std::span<const std::uint8_t> payload) {
+  const auto body = payload.subspan(kHeader);
+  if (!body.empty() && body.size() != 5) return drop();
+  if (!body.empty() && body[0] == kKeptPlan) model_.keep_plan(word_at(body.subspan(1)));
+  if (!body.empty() && body[0] == kKeptPatch) model_.keep_patch(word_at(body.subspan(1)));
+  std::vector<std::uint8_t> answer{kFromNode, kKeep, address_, payload[3], 0};
+  for (const std::uint32_t check : {model_.plan_check(), model_.patch_check()}) {
+    for (unsigned i = 0; i < 4; ++i) answer.push_back(byte_of(check, i));
+  }
+  return frame_of(std::move(answer));
 }
 
 std::vector<std::uint8_t> SerialMarker::preload(std::span<const std::uint8_t> payload) {

@@ -47,6 +47,7 @@ class SerialMarker {
   std::vector<std::uint8_t> who(std::uint8_t plan_byte, std::uint8_t round);
   std::vector<std::uint8_t> take_address(std::span<const std::uint8_t> payload);
   [[nodiscard]] std::vector<std::uint8_t> health(std::uint8_t plan_byte, Instant now) const;
+  std::vector<std::uint8_t> keep(std::span<const std::uint8_t> payload);
   [[nodiscard]] std::vector<std::uint8_t> i_am(std::uint8_t command, std::uint8_t plan_byte) const;
   std::vector<std::uint8_t> drop() {
     ++dropped_;

@@ -42,9 +42,10 @@ std::size_t switch_at(const CueSchedule& schedule, Instant show_time) {
 
 /// A loop on a fake bus; the show runs by the clock.
 struct Bench {
-  Bench(CueSchedule plan, std::size_t nodes, bool canopen, const std::vector<SwitchOn>& switch_on = {})
+  Bench(CueSchedule plan, std::size_t nodes, bool canopen, const std::vector<SwitchOn>& switch_on = {},
+        bool keeps_checks = false)
       : schedule(std::move(plan)),
-        driver(nodes, kChannels, canopen),
+        driver(nodes, kChannels, canopen, keeps_checks),
         loop(schedule, addresses(nodes), driver, switch_on) {}
 
   static std::vector<drivers::NodeAddress> addresses(std::size_t nodes) {
@@ -644,6 +645,91 @@ TEST_P(AnyBus, GoingOverToAnotherScheduleUploadsItsNewLooksAndLightsIt) {
     fresh += operation.kind == Kind::upload && operation.sequence > 10 ? 1 : 0;
   }
   EXPECT_EQ(fresh, 20U) << "new looks are uploaded, twice each, before a lamp shows one";
+}
+
+/// Four nodes that stand still, and what they have to keep.
+struct KeepingBench : Bench {
+  using Keeps = BusLoop::Keeps;
+  static CueSchedule wanting(std::uint32_t plan) {
+    CueSchedule schedule = schedule_of(4, 1, every_switch);
+    schedule.set_checks({plan, {11, 12, 13, 14}});
+    return schedule;
+  }
+  explicit KeepingBench(bool canopen) : Bench(wanting(0xABCD), 4, canopen, {}, true) {
+    for (std::size_t n = 0; n < 4; ++n) driver.node(n).kept = {7, static_cast<std::uint32_t>(11 + n)};
+  }
+  [[nodiscard]] std::vector<Keeps> keeps() const {
+    std::vector<Keeps> list;
+    for (std::size_t n = 0; n < 4; ++n) list.push_back(loop.standing(n).keeps);
+    return list;
+  }
+  void run_for(Duration time) { run_until(now + time); }
+};
+
+TEST_P(AnyBus, EveryNodeIsToldThePlanAndAskedOnceWhatItKeeps) {
+  using enum BusLoop::Keeps;
+  KeepingBench bench(GetParam());
+  bench.driver.node(1).kept.patch = 11;  // exchanged with its neighbour
+  bench.driver.node(2).kept.patch = 0;
+  bench.driver.node(3).tells_kept = false;
+  EXPECT_EQ(bench.keeps(), std::vector(4, unknown));
+  bench.run_for(milliseconds(6000));
+  EXPECT_EQ(bench.keeps(), (std::vector{same, other_patch, no_patch, untold}));
+  EXPECT_EQ(bench.driver.count(Kind::tell_plan), 1U);
+  EXPECT_TRUE(bench.loop.settled()) << "no lamp waits for it";
+  EXPECT_EQ(bench.loop.counters().quarantines, 0U) << "who does not tell is not missed";
+  for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(bench.driver.node(n).kept.plan, 0xABCDU);
+  bench.driver.node(1).kept.patch = 12;
+  bench.driver.node(2).kept.patch = 13;
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.keeps(), (std::vector{same, same, same, untold})) << "who was wrong is asked again";
+  bench.driver.log.clear();
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.driver.count(Kind::ask_kept), 0U) << "who is right is not";
+}
+
+TEST_P(AnyBus, ANodeThatMissesTheWordOfThePlanIsToldAgain) {
+  using enum BusLoop::Keeps;
+  KeepingBench bench(GetParam());
+  int heard = 0;
+  bench.driver.lost = [&](Kind kind, NodeIndex node, Instant) {
+    return kind == Kind::tell_plan && node == NodeIndex(2) && ++heard < 3;
+  };
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.keeps(), std::vector(4, same));
+  EXPECT_EQ(bench.driver.count(Kind::tell_plan), 3U);
+}
+
+TEST_P(AnyBus, ANodeThatKeepsAnotherPlanAllTheTimeIsToldSoAndOthersAreNotKeptBusy) {
+  using enum BusLoop::Keeps;
+  KeepingBench bench(GetParam());
+  bench.driver.lost = [](Kind kind, NodeIndex node, Instant) {
+    return kind == Kind::tell_plan && node == NodeIndex(0);
+  };
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.keeps(), (std::vector{other_plan, same, same, same}));
+  bench.driver.log.clear();
+  bench.run_for(milliseconds(10'000));
+  EXPECT_LE(bench.driver.count(Kind::ask_kept), 6U);
+  EXPECT_LE(bench.driver.count(Kind::tell_plan), 6U);
+}
+
+TEST_P(AnyBus, ANodeThatHasRestartedAndAnotherPlanAreAskedAnew) {
+  using enum BusLoop::Keeps;
+  KeepingBench bench(GetParam());
+  bench.run_for(milliseconds(3000));
+  bench.driver.node(3).kept.patch = 99;  // another piece in its place
+  bench.driver.reboot(3);
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.keeps(), (std::vector{same, same, same, other_patch}));
+  const CueSchedule other = KeepingBench::wanting(0x1234);
+  const auto part = bench.loop.part_of(other, bench.schedule);
+  bench.loop.take(*part);
+  (void)bench.loop.step(bench.now, bench.target());
+  EXPECT_EQ(bench.keeps(), std::vector(4, unknown));
+  bench.run_for(milliseconds(3000));
+  EXPECT_EQ(bench.keeps(), (std::vector{same, same, same, other_patch}));
+  EXPECT_EQ(bench.driver.node(0).kept.plan, 0x1234U);
 }
 
 TEST_P(AnyBus, WhoShowsTheSameInTheOtherScheduleIsLeftAlone) {

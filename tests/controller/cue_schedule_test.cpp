@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "controller/plan_check.hpp"
 #include "tests/controller/fake_driver.hpp"
 #include "tests/support/small_show.hpp"
 

@@ -18,7 +18,7 @@ namespace footlight::controller {
 /// may be lost by script. Nodes behave as docs/wire-protocol.md, section 1, without lease.
 class FakeDriver final : public drivers::Driver {
  public:
-  enum class Kind { start, preload, latch, heartbeat, ask, upload };
+  enum class Kind { start, preload, latch, heartbeat, ask, upload, tell_plan, ask_kept };
   struct Operation {
     Kind kind;
     NodeIndex node;
@@ -34,9 +34,12 @@ class FakeDriver final : public drivers::Driver {
     std::uint16_t boots = 1;
     std::uint16_t known_boots = 1;
     bool dead = false;
+    drivers::KeptChecks kept{0, 0};
+    bool tells_kept = true;
   };
 
-  FakeDriver(std::size_t nodes, std::size_t channels, bool canopen) : canopen_(canopen) {
+  FakeDriver(std::size_t nodes, std::size_t channels, bool canopen, bool keeps_checks = false)
+      : canopen_(canopen), keeps_checks_(keeps_checks) {
     nodes_.resize(nodes);
     for (Node& node : nodes_) node.showing.assign(channels, kNoGuidance);
   }
@@ -79,6 +82,7 @@ class FakeDriver final : public drivers::Driver {
     drivers::Capabilities can;
     can.sequenced_latch = !canopen_;
     can.pushes_status = canopen_;
+    can.keeps_checks = keeps_checks_;
     return can;
   }
   [[nodiscard]] Duration preload_time(int) const override { return milliseconds(4); }
@@ -112,6 +116,17 @@ class FakeDriver final : public drivers::Driver {
   }
   drivers::SendStatus ask(const drivers::NodeAddress& address, Instant now) override {
     return take({Kind::ask, address.node, 0, now}, milliseconds(3));
+  }
+  [[nodiscard]] Duration kept_time() const override { return milliseconds(3); }
+  drivers::SendStatus tell_plan(std::uint32_t check, Instant now) override {
+    const auto status = take({Kind::tell_plan, {}, 0, now}, milliseconds(1));
+    for (std::size_t n = 0; n < nodes_.size() && status == drivers::SendStatus::accepted; ++n) {
+      if (!nodes_[n].dead && !lost(Kind::tell_plan, NodeIndex::of(n), now)) nodes_[n].kept.plan = check;
+    }
+    return status;
+  }
+  drivers::SendStatus ask_kept(const drivers::NodeAddress& address, Instant now) override {
+    return take({Kind::ask_kept, address.node, 0, now}, milliseconds(3));
   }
   drivers::SendStatus upload_look(LookIndex index, const Look&, Instant now) override {
     return take({Kind::upload, {}, index, now}, milliseconds(1));
@@ -163,6 +178,12 @@ class FakeDriver final : public drivers::Driver {
       if (canopen_) answers_at_ = done_at_ + milliseconds(20);
     } else if (operation.kind == Kind::heartbeat) {
       std::erase_if(fenced, [&](NodeIndex n) { return !lost(Kind::heartbeat, n, operation.at); });
+    } else if (operation.kind == Kind::ask_kept) {
+      const Node& node = nodes_[operation.node.at()];
+      if (node.dead || !node.tells_kept || answer_lost(operation.node, operation.at)) return;
+      Event event{Event::Kind::keeps, operation.node};
+      event.kept = node.kept;
+      events.on_event(event);
     } else if (operation.kind == Kind::ask) {
       answer(operation.node.at(), operation.at, events);
     }
@@ -202,6 +223,7 @@ class FakeDriver final : public drivers::Driver {
   }
 
   bool canopen_;
+  bool keeps_checks_;
   std::vector<Node> nodes_;
   std::vector<bool> asked_;
   std::vector<LookIndex> looks_;

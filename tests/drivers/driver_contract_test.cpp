@@ -274,7 +274,7 @@ TEST_P(DriverContract, WhatIsNotProvedIsSaid) {
 }
 
 TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
-  for (const Task task : {Task::probe, Task::identify, Task::set_address, Task::health, Task::clock}) {
+  for (const Task task : {Task::probe, Task::identify, Task::set_address, Task::health, Task::clock, Task::patch}) {
     const std::string_view refusal = driver().refusal(task);
     if (!refusal.empty()) {
       EXPECT_GT(refusal.size(), 20U) << refusal;
@@ -293,6 +293,8 @@ TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
           return driver().ask_health(7, bench_->now);
         case Task::clock:
           return driver().ask_clock(7, bench_->now);
+        case Task::patch:
+          return driver().ask_patch(7, 0x12345678, bench_->now);
       }
       return SendStatus::down;
     };
@@ -310,6 +312,26 @@ TEST_P(DriverContract, EveryTaskIsDoneOrRefusedWithAReason) {
     EXPECT_NE(log().answers.back().kind, ServiceAnswer::Kind::found) << "nobody has said anything";
     EXPECT_TRUE(driver().ready()) << to_text(task);
   }
+}
+
+TEST_P(DriverContract, ANodeThatDoesNotTellWhatItKeepsIsNotMissed) {
+  EXPECT_EQ(driver().capabilities().keeps_checks, driver().refusal(Task::patch).empty());
+  if (!driver().capabilities().keeps_checks) return;
+  EXPECT_GT(driver().kept_time(), Duration{});
+  ASSERT_EQ(driver().tell_plan(0x89ABCDEF, bench_->now), SendStatus::accepted);
+  bench_->settle();
+  bench_->now += milliseconds(10);
+  bench_->finish();
+  ASSERT_EQ(driver().ask_kept(kSeven, bench_->now), SendStatus::accepted);
+  for (int i = 0; i < 5; ++i) {
+    bench_->step();
+    bench_->stay_silent();
+    bench_->settle();
+    bench_->step();
+  }
+  EXPECT_TRUE(driver().ready());
+  EXPECT_EQ(log().count(Kind::keeps), 0U);
+  EXPECT_EQ(log().count(Kind::missed), 0U);
 }
 
 TEST_P(DriverContract, TellsWhatANodeShows) {

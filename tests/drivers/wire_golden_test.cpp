@@ -61,6 +61,10 @@ TEST(SerialGolden, EveryFrameOfTheControllerIsAsDocumented) {
   EXPECT_EQ(wire(driver.set_address(7, 0x12345678, 9, now)), golden.bytes("address"));
   EXPECT_EQ(wire(driver.ask_health(7, now)), golden.bytes("ask-health"));
   EXPECT_EQ(wire(driver.ask_clock(7, now)), golden.bytes("clock"));
+  EXPECT_EQ(wire(driver.tell_plan(0x89ABCDEF, now)), golden.bytes("keep-plan"));
+  EXPECT_EQ(wire(driver.ask_kept(kSeven, now)), golden.bytes("ask-kept"));
+  EXPECT_EQ(wire(driver.ask_patch(7, 0x12345678, now)), golden.bytes("keep-patch"));
+  EXPECT_EQ(wire(driver.ask_patch(7, {}, now)), golden.bytes("ask-kept"));
 }
 
 TEST(SerialGolden, ATechniciansAnswersAreUnderstood) {
@@ -109,6 +113,11 @@ TEST(SerialGolden, ATechniciansAnswersAreUnderstood) {
   ASSERT_EQ(log.count(Kind::content), 1U);
   EXPECT_EQ(log.last(Kind::content)->detail, 3);
   EXPECT_EQ(log.last(Kind::content)->sequence, 17);
+  const KeptChecks both{0x89ABCDEF, 0x12345678};
+  EXPECT_EQ(hear(driver.ask_patch(7, 0x12345678, now), "kept").kept, both);
+  hear(driver.ask_kept(kSeven, now), "kept");
+  ASSERT_EQ(log.count(Kind::keeps), 1U);
+  EXPECT_EQ(log.last(Kind::keeps)->kept, both);
 }
 
 TEST(SerialGolden, EveryAnswerOfANodeIsUnderstood) {
@@ -153,6 +162,7 @@ TEST(CanopenGolden, EveryFrameOfTheControllerIsAsDocumented) {
   EXPECT_EQ(wire(driver.latch(17, kStart)), golden.frames("latch"));
   EXPECT_EQ(wire(driver.heartbeat(kShowTime, kStart)), golden.frames("heartbeat"));
   EXPECT_EQ(wire(driver.upload_look(5, kGrass, kStart)), golden.frames("look"));
+  EXPECT_EQ(wire(driver.tell_plan(0x89ABCDEF, kStart)), golden.frames("plan-check"));
   port.incoming.push_back(golden.frames("boot-up").front());
   driver.step(kStart, log);
   EXPECT_EQ(std::exchange(port.sent, {}), golden.frames("start-one"));
@@ -177,6 +187,42 @@ TEST(CanopenGolden, EveryFrameOfANodeIsUnderstood) {
   EXPECT_EQ(log.events[2].kind, Kind::rejected);
   EXPECT_EQ(log.events[2].detail, 0x8210);
   EXPECT_EQ(log.events[2].node, kSeven.node);
+}
+
+TEST(CanopenGolden, WhatANodeKeepsIsAskedBesideEverythingElse) {
+  const Golden golden("canopen.txt");
+  RecordingCan port;
+  CanopenDriver driver(port, {kSeven, kNine});
+  EventLog log;
+  const KeptChecks both{0x89ABCDEF, 0x12345678};
+  const auto asked = golden.frames("sdo-patch");
+  const auto answers = golden.frames("sdo-patch-answer");
+  ASSERT_EQ(driver.ask_kept(kSeven, kStart), SendStatus::accepted);
+  EXPECT_TRUE(driver.ready()) << "a latch waits for nobody's answer";
+  EXPECT_EQ(driver.ask_kept(kNine, kStart), SendStatus::busy);
+  EXPECT_EQ(driver.latch(17, kStart), SendStatus::accepted);
+  port.in_queue = 0;
+  for (std::size_t i = 1; i < answers.size(); ++i) {
+    EXPECT_EQ(port.sent.back().id == 0x080 ? asked[1] : port.sent.back(), asked[i]);
+    port.incoming.push_back(answers[i]);
+    driver.step(kStart, log);
+    port.in_queue = 0;
+  }
+  ASSERT_EQ(log.count(Kind::keeps), 1U);
+  EXPECT_EQ(log.last(Kind::keeps)->node, kSeven.node);
+  EXPECT_EQ(log.last(Kind::keeps)->kept, both);
+  EXPECT_TRUE(log.answers.empty()) << "no technician has asked";
+  ASSERT_EQ(driver.ask_patch(7, 0x12345678, kStart), SendStatus::accepted);
+  EXPECT_FALSE(driver.ready());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    EXPECT_EQ(port.sent.back(), asked[i]);
+    port.incoming.push_back(answers[i]);
+    driver.step(kStart, log);
+    port.in_queue = 0;
+  }
+  ASSERT_EQ(log.answers.size(), 1U);
+  EXPECT_EQ(log.answers.back().kind, ServiceAnswer::Kind::done);
+  EXPECT_EQ(log.answers.back().kept, both);
 }
 
 /// Plays the answers to a client and records what it says.
@@ -254,6 +300,35 @@ TEST(ModbusGolden, EveryRequestIsAsDocumented) {
   EXPECT_EQ(wire(driver.heartbeat(kShowTime, kStart)), without_crc("heartbeat"));
   EXPECT_EQ(wire(driver.ask(kSeven, kStart)), without_crc("ask"));
   EXPECT_EQ(wire(driver.upload_look(5, kGrass, kStart)), without_crc("look"));
+  EXPECT_EQ(wire(driver.tell_plan(0x89ABCDEF, kStart)), without_crc("plan-check"));
+}
+
+TEST(ModbusGolden, WhatANodeKeepsIsWrittenAndReadAsDocumented) {
+  const Golden golden("modbus.txt");
+  RecordingModbus port;
+  ModbusDriver driver(port, footlight_marker_profile(), {kSeven}, kPlanByte);
+  EventLog log;
+  const auto without_crc = [&](const std::string& name) {
+    const auto bytes = golden.bytes(name);
+    return std::vector<std::uint8_t>(bytes.begin(), bytes.end() - 2);
+  };
+  const std::vector<std::uint16_t> registers{0x89AB, 0xCDEF, 0x1234, 0x5678, 0, 0, 0, 0};
+  const KeptChecks both{0x89ABCDEF, 0x12345678};
+  ASSERT_EQ(driver.ask_kept(kSeven, kStart), SendStatus::accepted);
+  EXPECT_EQ(rtu_body(port.sent.back()), without_crc("ask-kept"));
+  port.answer(ModbusReply::Outcome::ok, registers);
+  driver.step(kStart, log);
+  ASSERT_EQ(log.count(Kind::keeps), 1U);
+  EXPECT_EQ(log.last(Kind::keeps)->kept, both);
+  ASSERT_EQ(driver.ask_patch(7, 0x12345678, kStart), SendStatus::accepted);
+  EXPECT_EQ(rtu_body(port.sent.back()), without_crc("patch-check"));
+  port.answer(ModbusReply::Outcome::ok);
+  driver.step(kStart, log);
+  EXPECT_EQ(rtu_body(port.sent.back()), without_crc("ask-kept"));
+  port.answer(ModbusReply::Outcome::ok, registers);
+  driver.step(kStart, log);
+  ASSERT_EQ(log.answers.size(), 1U);
+  EXPECT_EQ(log.answers.back().kept, both);
 }
 
 }  // namespace

@@ -300,6 +300,41 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             desk.say("quit")
             self.assertEqual(desk.process.wait(20), 0)
 
+        def test_nodes_of_another_patch_lock_go_until_they_are_given_the_rigs(self):
+            self.make_show()
+            self.serve()
+            rig = self.path("s", "rig.yaml")
+            with open(rig) as f:
+                text = f.read()
+            with open(rig, "w") as f:  # the rig of another day: the columns of the floor go to the buses in another order
+                f.write(text.replace("floor: {buses: [left, middle, right]", "floor: {buses: [right, middle, left]"))
+            desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
+            desk.say("yes", "yes", "yes")
+            desk.until("roll call", ready=True)
+            stage = lambda: next(s for s in desk.state["readiness"]["stages"] if s["name"] == "plan-on-nodes")
+            wait_for(lambda: stage()["state"] == "ERROR", f"the other patch to be found, not {stage()}")
+            self.assertIn("the patch of another rig or node is on: ", stage()["text"])
+            self.assertIn("left-1", stage()["text"])
+            desk.say("arm", "go")
+            wait_for(lambda: any("arm: plan-on-nodes ERROR" in text for text in desk.answers()), "the refusal")
+            wait_for(lambda: any("the show is not ready" in text for text in desk.answers()), "the refused GO")
+            desk.say("quit")
+            desk.process.wait(20)
+            for bus in ("left", "right"):
+                on = ["devices", "patch", bus, "--show", self.show, "--transport-map", self.map, "--json"]
+                told, _ = footlight(*on, status=4)
+                self.assertEqual({n["is"] for n in json.loads(told)["nodes"]}, {"other"})
+                told, _ = footlight(*on, "--write")
+                self.assertEqual({(n["is"], n["patch"] == n["rig"]) for n in json.loads(told)["nodes"]}, {("same", True)})
+            desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
+            desk.say("yes", "yes", "yes")
+            desk.until("roll call", ready=True)
+            wait_for(lambda: stage()["state"] == "SUCCESS", f"the rig's patch on every node, not {stage()}")
+            self.assertIn("keep this plan and patch", stage()["text"])
+            desk.say("arm", "quit")
+            wait_for(lambda: "GO is armed" in desk.answers(), "arm")
+            desk.process.wait(20)
+
         def test_scope_none_opens_nothing(self):
             self.make_show()
             self.serve()

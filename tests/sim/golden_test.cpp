@@ -82,6 +82,12 @@ TEST_F(Golden, SerialFramesAreUnderstoodAndAnswered) {
   EXPECT_EQ(marker.receive(bytes("ask"), kStart), bytes("status"));
   marker.receive(bytes("identify"), kStart);
   EXPECT_TRUE(seven.identifying(kStart));
+  EXPECT_TRUE(marker.receive(bytes("keep-plan"), kStart).empty()) << "to all: nobody answers";
+  EXPECT_EQ(marker.receive(bytes("keep-patch"), kStart), bytes("kept"));
+  seven.power_on(kStart);
+  EXPECT_EQ(marker.receive(bytes("ask-kept"), kStart), bytes("kept")) << "it outlasts power-off";
+  marker.receive(bytes("preload-32"), kStart);
+  marker.receive(bytes("latch"), kStart);
   const Instant late = kStart + milliseconds(1100);
   marker.receive(bytes("heartbeat"), late);
   EXPECT_EQ(seven.state(), NodeState::showing);
@@ -125,7 +131,8 @@ TEST_F(Golden, SdoRequestsAreAnswered) {
     for (auto line = begin; line != end; ++line) out.push_back(can_frame(line->second));
     return out;
   };
-  for (const std::string name : {"sdo-product", "sdo-name", "sdo-identify", "sdo-nothing"}) {
+  marker.receive(frames("plan-check").front(), kStart);
+  for (const std::string name : {"sdo-product", "sdo-name", "sdo-identify", "sdo-patch", "sdo-nothing"}) {
     std::vector<drivers::CanFrame> answers;
     for (const drivers::CanFrame& request : frames(name)) {
       EXPECT_EQ(marker.receive(request, kStart), CanopenMarker::Reaction::sdo) << name;
@@ -151,6 +158,12 @@ TEST_F(Golden, ModbusFramesAreUnderstood) {
   ASSERT_EQ(status.size(), 17U);
   // 17 shown and none pending, the CRC that serial.txt and canopen.txt have for these looks, state 1, boots 0x0102.
   EXPECT_EQ(Octets(status.begin() + 3, status.begin() + 11), (Octets{17, 0, 0x99, 0x5B, 0, 1, 1, 2}));
+  EXPECT_TRUE(marker.receive_rtu(bytes("plan-check"), kStart).empty());
+  EXPECT_EQ(marker.receive_rtu(bytes("patch-check"), kStart).size(), 8U);
+  const Octets kept = marker.receive_rtu(bytes("ask-kept"), kStart);
+  ASSERT_EQ(kept.size(), 21U);
+  EXPECT_EQ(Octets(kept.begin() + 3, kept.begin() + 13),
+            (Octets{0x89, 0xAB, 0xCD, 0xEF, 0x12, 0x34, 0x56, 0x78, 0, 0}));
   marker.receive_rtu(bytes("heartbeat"), kStart + milliseconds(1100));
   EXPECT_EQ(seven.state(), NodeState::showing);
 }

@@ -49,6 +49,7 @@ Capabilities CanopenDriver::capabilities() const {
   Capabilities can;
   can.sequenced_latch = false;
   can.pushes_status = !setup_;
+  can.keeps_checks = !setup_;
   if (!setup_) return can;
   can.readback = false;
   can.proves_looks = false;
@@ -89,8 +90,8 @@ Duration CanopenDriver::upload_time() const {
 bool CanopenDriver::ready() const {
   // A module's preload has no receipt and no answer to its latch: here nothing else may stand before the latch.
   if (setup_ && !down() && port_.queued() > 0) return false;
-  return down() ||
-         (outbox_.empty() && !service_ && port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
+  return down() || (outbox_.empty() && (!service_ || service_->of_show) &&
+                    port_.queued() + kMostFrames <= kWindow);  // down: to be told so, not to wait
 }
 
 SendStatus CanopenDriver::start(Instant now) {

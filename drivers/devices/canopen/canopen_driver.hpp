@@ -58,22 +58,33 @@ class CanopenDriver final : public Driver {
   SendStatus ask(const NodeAddress& node, Instant now) override;
   SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
 
+  SendStatus tell_plan(std::uint32_t check, Instant now) override;
+  /// By SDO, beside whatever else the bus has to do.
+  SendStatus ask_kept(const NodeAddress& node, Instant now) override;
+  [[nodiscard]] Duration kept_time() const override;
+
   // By SDO; every step of it may take 50 ms, and until then nothing else is accepted.
   [[nodiscard]] std::string_view refusal(Task task) const override;
   SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
   SendStatus identify(std::uint16_t address, bool on, Instant now) override;
   SendStatus ask_health(std::uint16_t address, Instant now) override;
+  SendStatus ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) override;
 
   Instant step(Instant now, EventSink& events) override;
 
  private:
-  /// Objects of one node that are read one after the other, or one that is written.
+  /// One object that is read or written.
+  struct Transfer {
+    canopen::ObjectPlace place;
+    std::vector<std::uint8_t> written{};  ///< empty: read
+  };
+  /// Objects of one node, one after the other.
   struct Service {
     ServiceAnswer answer;
-    std::vector<canopen::ObjectPlace> places;
-    std::vector<std::uint8_t> written;  ///< empty: read
+    std::vector<Transfer> transfers;
     std::size_t next = 0;
     Instant deadline;
+    std::optional<NodeIndex> of_show{};  ///< asked by the show: told as an event, and nothing waits for it
   };
   struct NodeState {
     NodeAddress address;
@@ -102,8 +113,8 @@ class CanopenDriver final : public Driver {
   void tell_preloads(EventSink& events);
   void tell_bus(Instant now, EventSink& events);
   Instant tell_missed(Instant now, EventSink& events);
-  SendStatus serve(Task task, std::uint16_t address, std::vector<canopen::ObjectPlace> places,
-                   std::vector<std::uint8_t> written, Instant now);
+  SendStatus serve(Task task, std::uint16_t address, std::vector<Transfer> transfers, Instant now);
+  static void tell(const Service& service, EventSink& events);
   void ask_next_object(Service& service, Instant now);
   void hear_sdo(const CanFrame& frame, Instant now);
   void serve_on(Instant now, EventSink& events);

@@ -68,6 +68,11 @@ std::vector<CanFrame> look_entry(LookIndex index, const Look& look) {
                {kToAllNodes, 0x01, 0x21, index, static_cast<std::uint8_t>(look.effect), look.brightness, 0, 0})};
 }
 
+CanFrame plan_check(std::uint32_t check) {
+  const auto byte = [&](unsigned i) { return static_cast<std::uint8_t>(check >> (8U * i)); };
+  return frame_of(kMultiplexed, {kToAllNodes, 0x05, 0x21, 1, byte(0), byte(1), byte(2), byte(3)});
+}
+
 Heard decode(const CanFrame& frame) {
   const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
   if (frame.kind != CanFrame::Kind::classic || frame.id > 0x7FF || node < 1 || node > kLastNode) return {};

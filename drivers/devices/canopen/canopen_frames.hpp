@@ -35,6 +35,8 @@ enum class NmtCommand : std::uint8_t {
 [[nodiscard]] std::vector<CanFrame> preload(std::uint8_t node, std::span<const LookIndex> looks);
 /// Colour (object 0x2100), then effect and brightness (object 0x2101), to all nodes.
 [[nodiscard]] std::vector<CanFrame> look_entry(LookIndex index, const Look& look);
+/// Check of the plan (object 0x2105:1), to all nodes.
+[[nodiscard]] CanFrame plan_check(std::uint32_t check);
 
 /// TPDO1 of a node.
 struct StatusPdo {

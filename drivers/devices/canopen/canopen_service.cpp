@@ -27,6 +27,8 @@ constexpr ObjectPlace kBoots{0x2102, 4};
 constexpr ObjectPlace kErrors{0x2102, 5};
 constexpr ObjectPlace kChannels{0x2103, 0};
 constexpr ObjectPlace kIdentify{0x2104, 0};
+constexpr ObjectPlace kPlanCheck{0x2105, 1};
+constexpr ObjectPlace kPatchCheck{0x2105, 2};
 
 bool same(ObjectPlace a, ObjectPlace b) { return a.index == b.index && a.sub == b.sub; }
 
@@ -74,6 +76,10 @@ void note(ServiceAnswer& answer, ObjectPlace place, const std::vector<std::uint8
     answer.health.push_back({"errors", static_cast<double>(number), ""});
   } else if (same(place, kBoots)) {
     answer.health.push_back({"boots", static_cast<double>(number), ""});
+  } else if (same(place, kPlanCheck)) {
+    answer.kept.plan = number;
+  } else if (same(place, kPatchCheck)) {
+    answer.kept.patch = number;
   }
 }
 
@@ -82,32 +88,57 @@ void note(ServiceAnswer& answer, ObjectPlace place, const std::vector<std::uint8
 std::string_view CanopenDriver::refusal(Task task) const {
   if (task == Task::set_address) return "the id of a CANopen node is set on the device";
   if (task == Task::clock) return "CANopen markers keep no show time";
+  if (task == Task::patch && setup_) return "a module of outputs keeps nothing of a show";
   if (task == Task::identify && setup_) return "a module of outputs cannot show which one it is; its lamps can be lit";
   return {};
 }
 
 SendStatus CanopenDriver::probe(std::uint16_t address, unsigned /*round*/, Instant now) {
-  return serve(Task::probe, address, {kVendor, kProduct, kRevision, kSerialNumber, kDeviceName, kChannels}, {}, now);
+  return serve(Task::probe, address, {{kVendor}, {kProduct}, {kRevision}, {kSerialNumber}, {kDeviceName}, {kChannels}},
+               now);
 }
 
 SendStatus CanopenDriver::identify(std::uint16_t address, bool on, Instant now) {
-  return serve(Task::identify, address, {kIdentify}, {static_cast<std::uint8_t>(on ? 1 : 0)}, now);
+  return serve(Task::identify, address, {{kIdentify, {static_cast<std::uint8_t>(on ? 1 : 0)}}}, now);
 }
 
 SendStatus CanopenDriver::ask_health(std::uint16_t address, Instant now) {
-  if (setup_) return serve(Task::health, address, {kErrorRegister}, {}, now);
-  return serve(Task::health, address, {kErrorRegister, kErrors, kBoots}, {}, now);
+  if (setup_) return serve(Task::health, address, {{kErrorRegister}}, now);
+  return serve(Task::health, address, {{kErrorRegister}, {kErrors}, {kBoots}}, now);
 }
 
-SendStatus CanopenDriver::serve(Task task, std::uint16_t address, std::vector<ObjectPlace> places,
-                                std::vector<std::uint8_t> written, Instant now) {
+SendStatus CanopenDriver::ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) {
+  std::vector<Transfer> transfers;
+  if (patch) {
+    Transfer& write = transfers.emplace_back(Transfer{kPatchCheck});
+    for (unsigned i = 0; i < 4; ++i) write.written.push_back(static_cast<std::uint8_t>(*patch >> (8U * i)));
+  }
+  transfers.push_back({kPlanCheck});
+  transfers.push_back({kPatchCheck});
+  return serve(Task::patch, address, std::move(transfers), now);
+}
+
+SendStatus CanopenDriver::tell_plan(std::uint32_t check, Instant /*now*/) {
+  if (down()) return SendStatus::down;
+  if (!ready()) return SendStatus::busy;
+  return hand_over(canopen::plan_check(check));
+}
+
+SendStatus CanopenDriver::ask_kept(const NodeAddress& node, Instant now) {
+  const SendStatus status = serve(Task::patch, node.address, {{kPlanCheck}, {kPatchCheck}}, now);
+  if (status == SendStatus::accepted && service_) service_->of_show = node.node;
+  return status;
+}
+
+Duration CanopenDriver::kept_time() const { return 4 * frame_time(); }
+
+SendStatus CanopenDriver::serve(Task task, std::uint16_t address, std::vector<Transfer> transfers, Instant now) {
   FL_CHECK(address >= 1 && address <= canopen::kLastNode);
   if (down()) return SendStatus::down;
-  if (!ready() || (setup_ && setup_->under_way())) return SendStatus::busy;
+  if (!ready() || service_ || (setup_ && setup_->under_way())) return SendStatus::busy;
   Service service;
   service.answer = ServiceAnswer{task, Kind::silent, address, 0, {}, {}};
-  service.places = std::move(places);
-  service.written = std::move(written);
+  service.transfers = std::move(transfers);
   ask_next_object(service, now);
   service_ = std::move(service);
   pump();
@@ -115,9 +146,9 @@ SendStatus CanopenDriver::serve(Task task, std::uint16_t address, std::vector<Ob
 }
 
 void CanopenDriver::ask_next_object(Service& service, Instant now) {
-  const ObjectPlace place = service.places.at(service.next);
+  const auto& [place, written] = service.transfers.at(service.next);
   const auto node = static_cast<std::uint8_t>(service.answer.address);
-  outbox_.push_back(service.written.empty() ? sdo_.read(node, place) : sdo_.write(node, place, service.written));
+  outbox_.push_back(written.empty() ? sdo_.read(node, place) : sdo_.write(node, place, written));
   service.deadline = now + kSdoTimeout;
 }
 
@@ -134,25 +165,35 @@ void CanopenDriver::serve_on(Instant now, EventSink& events) {
   if (!service_) return;
   Service& service = *service_;
   ServiceAnswer& answer = service.answer;
-  const ObjectPlace place = service.places.at(service.next);
+  const auto& [place, written] = service.transfers.at(service.next);
   const bool silent = sdo_.state() == SdoClient::State::waiting && now >= service.deadline;
   if (sdo_.state() == SdoClient::State::waiting && !silent && !down()) return;
   if (sdo_.state() == SdoClient::State::done) {
     answer.kind = answer.task == Task::probe ? Kind::found : Kind::done;
-    note(answer, place, sdo_.data());
+    if (written.empty()) note(answer, place, sdo_.data());
   } else if (sdo_.state() == SdoClient::State::aborted && answer.kind == Kind::silent) {
     // A node that says no is there; only what was asked of it alone is refused by that.
     answer.kind = answer.task == Task::probe ? Kind::found : Kind::refused;
     answer.detail = static_cast<int>(sdo_.abort_code());
   }
   if (silent) outbox_.push_back(sdo_.give_up());
-  const bool over = silent || down() || ++service.next == service.places.size();
+  const bool refused = answer.task == Task::patch && answer.kind == Kind::refused;
+  const bool over = silent || down() || refused || ++service.next == service.transfers.size();
   if (!over) {
     ask_next_object(service, now);
     return;
   }
-  events.on_answer(answer);
+  if (silent) answer.kind = answer.task == Task::patch ? Kind::silent : answer.kind;
+  tell(service, events);
   service_.reset();
+}
+
+void CanopenDriver::tell(const Service& service, EventSink& events) {
+  if (!service.of_show) return events.on_answer(service.answer);
+  if (service.answer.kind != Kind::done) return;
+  DeviceEvent event{DeviceEvent::Kind::keeps, *service.of_show};
+  event.kept = service.answer.kept;
+  events.on_event(event);
 }
 
 }  // namespace footlight::drivers

@@ -106,6 +106,8 @@ std::string_view DmxDriver::refusal(Task task) const {
     case Task::set_address:
       return "DMX goes one way: addresses are set at the lamps";
     case Task::health:
+    case Task::patch:
+      return "a DMX lamp keeps nothing of a show";
     case Task::clock:
       return "DMX goes one way: lamps cannot tell";
   }

@@ -118,6 +118,19 @@ SendStatus SerialDriver::sync_time(Duration show_time, double rate, Instant now)
   return status;
 }
 
+SendStatus SerialDriver::tell_plan(std::uint32_t check, Instant now) {
+  return send(footlight_serial::keep(0, plan_byte_, footlight_serial::Kept::plan, check), std::nullopt, 0, now);
+}
+
+SendStatus SerialDriver::ask_kept(const NodeAddress& node, Instant now) {
+  const Frame frame = footlight_serial::keep_request(node.unit(), plan_byte_);
+  return send(frame, Awaited{node, Command::keep}, footlight_serial::kKeepBody, now);
+}
+
+Duration SerialDriver::kept_time() const {
+  return port_.wire_time(frame_length(0)) + kTurnaround + port_.wire_time(frame_length(footlight_serial::kKeepBody));
+}
+
 SendStatus SerialDriver::serve(const Frame& frame, Task task, std::size_t answer_bytes, Instant now) {
   Awaited awaited;
   awaited.node.address = frame.address;
@@ -166,6 +179,14 @@ SendStatus SerialDriver::ask_clock(std::uint16_t address, Instant now) {
   const SendStatus status = serve(frame, Task::clock, footlight_serial::kClockBody, now);
   if (status == SendStatus::accepted) clock_asked_at_ = now + wire_time(frame);
   return status;
+}
+
+SendStatus SerialDriver::ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) {
+  using footlight_serial::Kept;
+  const auto unit = static_cast<std::uint8_t>(address);
+  return serve(patch ? footlight_serial::keep(unit, plan_byte_, Kept::patch, *patch)
+                     : footlight_serial::keep_request(unit, plan_byte_),
+               Task::patch, footlight_serial::kKeepBody, now);
 }
 
 std::vector<HealthValue> SerialDriver::clock_values(const footlight_serial::NodeClock& clock) const {
@@ -220,6 +241,10 @@ Instant SerialDriver::step(Instant now, EventSink& events) {
 }
 
 void SerialDriver::give_up(EventSink& events) {
+  if (!awaited_->task && awaited_->command == Command::keep) {
+    given_up_ = std::exchange(awaited_, std::nullopt);
+    return;
+  }
   if (!awaited_->task) {
     events.on_event({DeviceEvent::Kind::missed, awaited_->node.node, awaited_->sequence});
     given_up_ = std::exchange(awaited_, std::nullopt);
@@ -247,6 +272,8 @@ bool SerialDriver::tell_service(const Frame& frame, EventSink& events) {
     const auto clock = footlight_serial::decode_clock(frame);
     if (!clock) return false;
     answer.health = clock_values(*clock);
+  } else if (const auto kept = decode_kept(frame)) {
+    answer.kept = *kept;
   } else if (!decode_status(frame)) {
     return false;
   }
@@ -290,6 +317,10 @@ void SerialDriver::hear(const Frame& frame, Instant now, EventSink& events) {
     if (frame.sequence != awaited_->sequence || content->crc != awaited_->crc) return;
     DeviceEvent event{DeviceEvent::Kind::content, awaited_->node.node, frame.sequence};
     event.detail = content->channel;
+    events.on_event(event);
+  } else if (const auto kept = decode_kept(frame)) {
+    DeviceEvent event{DeviceEvent::Kind::keeps, awaited_->node.node};
+    event.kept = *kept;
     events.on_event(event);
   } else if (const auto status = decode_status(frame)) {
     tell_status(awaited_->node, *status, frame.sequence, events);

@@ -30,6 +30,7 @@ class SerialDriver final : public Driver {
     Capabilities can;
     can.contents = true;
     can.keeps_time = true;
+    can.keeps_checks = true;
     return can;
   }
   [[nodiscard]] Duration preload_time(int channels) const override;
@@ -52,6 +53,9 @@ class SerialDriver final : public Driver {
   [[nodiscard]] Duration content_time() const override;
   SendStatus sync_time(Duration show_time, double rate, Instant now) override;
   [[nodiscard]] Duration sync_time_time() const override;
+  SendStatus tell_plan(std::uint32_t check, Instant now) override;
+  SendStatus ask_kept(const NodeAddress& node, Instant now) override;
+  [[nodiscard]] Duration kept_time() const override;
   [[nodiscard]] std::string_view refusal(Task /*task*/) const override { return {}; }
   /// Round 0 asks for a status, which is quick and tells that somebody is there; later rounds ask who.
   SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
@@ -60,6 +64,7 @@ class SerialDriver final : public Driver {
                          Instant now) override;
   SendStatus ask_health(std::uint16_t address, Instant now) override;
   SendStatus ask_clock(std::uint16_t address, Instant now) override;
+  SendStatus ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) override;
   Instant step(Instant now, EventSink& events) override;
 
  private:

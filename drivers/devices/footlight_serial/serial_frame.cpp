@@ -38,7 +38,7 @@ std::optional<Frame> parse(std::span<const std::uint8_t> payload) {
   if (check != crc_32(content)) return std::nullopt;
   const auto direction = static_cast<Direction>(content[0]);
   if (direction != Direction::from_controller && direction != Direction::from_node) return std::nullopt;
-  if (content[1] < 1 || content[1] > static_cast<std::uint8_t>(Command::lead)) return std::nullopt;
+  if (content[1] < 1 || content[1] > static_cast<std::uint8_t>(Command::keep)) return std::nullopt;
   return Frame{direction,  static_cast<Command>(content[1]),          content[2], content[3],
                content[4], {content.begin() + kHeader, content.end()}};
 }
@@ -157,6 +157,25 @@ Frame health_request(std::uint8_t address, std::uint8_t plan_byte) {
 
 Frame clock_request(std::uint8_t address, std::uint8_t plan_byte) {
   return {Direction::from_controller, Command::clock, address, plan_byte, 0, {}};
+}
+
+Frame keep_request(std::uint8_t address, std::uint8_t plan_byte) {
+  return {Direction::from_controller, Command::keep, address, plan_byte, 0, {}};
+}
+
+Frame keep(std::uint8_t address, std::uint8_t plan_byte, Kept what, std::uint32_t check) {
+  Frame frame{Direction::from_controller, Command::keep, address, plan_byte, 0, {static_cast<std::uint8_t>(what)}};
+  append_little_endian(frame.body, check);
+  return frame;
+}
+
+std::optional<KeptChecks> decode_kept(const Frame& frame) {
+  if (frame.direction != Direction::from_node || frame.command != Command::keep) return std::nullopt;
+  if (frame.body.size() != kKeepBody) return std::nullopt;
+  const auto word = [&](std::size_t at) {
+    return little_endian(frame.body, at) | (std::uint32_t{little_endian(frame.body, at + 2)} << 16U);
+  };
+  return KeptChecks{word(0), word(4)};
 }
 
 std::optional<ContentReceipt> decode_content_receipt(const Frame& frame) {

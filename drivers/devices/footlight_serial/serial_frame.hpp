@@ -26,7 +26,8 @@ enum class Command : std::uint8_t {
   who = 10,
   address = 11,
   health = 12,
-  lead = 13  ///< from a node: it is fenced
+  lead = 13,  ///< from a node: it is fenced
+  keep = 14
 };
 enum class Direction : std::uint8_t { from_controller = 0x01, from_node = 0x81 };
 
@@ -49,6 +50,7 @@ inline constexpr std::size_t kContentReceiptBody = 3;
 inline constexpr std::size_t kWhoBody = 6;
 inline constexpr std::size_t kHealthBody = 8;
 inline constexpr std::size_t kClockBody = 7;
+inline constexpr std::size_t kKeepBody = 8;
 inline constexpr int kWhoSlots = 8;  ///< in which devices of one address answer
 
 /// Bytes on the wire of a frame with a body of that length: delimiters, COBS, header, CRC.
@@ -73,6 +75,10 @@ inline constexpr int kWhoSlots = 8;  ///< in which devices of one address answer
 [[nodiscard]] Frame new_address(std::uint8_t address, std::uint8_t plan_byte, std::uint32_t unique_id, std::uint8_t to);
 [[nodiscard]] Frame health_request(std::uint8_t address, std::uint8_t plan_byte);
 [[nodiscard]] Frame clock_request(std::uint8_t address, std::uint8_t plan_byte);
+/// What a node keeps: asked for, and written before.
+enum class Kept : std::uint8_t { plan = 1, patch = 2 };
+[[nodiscard]] Frame keep_request(std::uint8_t address, std::uint8_t plan_byte);
+[[nodiscard]] Frame keep(std::uint8_t address, std::uint8_t plan_byte, Kept what, std::uint32_t check);
 
 /// Body of a status answer.
 struct NodeStatus {
@@ -100,6 +106,7 @@ struct NodeClock {
   int times_taken = 0;  ///< TIME frames, modulo 256
 };
 [[nodiscard]] std::optional<NodeClock> decode_clock(const Frame& frame);
+[[nodiscard]] std::optional<KeptChecks> decode_kept(const Frame& frame);
 
 /// Finds frames in any bytes: in step again after the next 0x00, whatever was heard before. Never holds more than one
 /// frame's length.

@@ -145,6 +145,34 @@ Requests lead(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan
   return write(profile, unit, profile.heartbeat_register.value() + kLeadAfterHeartbeat, {first, second, plan_byte});
 }
 
+std::optional<int> kept_register(const ModbusProfile& profile) {
+  if (!profile.proves_looks() || !profile.readdress_register) return std::nullopt;
+  return *profile.readdress_register + kKeptAfterReaddress;
+}
+
+Requests plan_check(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t check) {
+  const auto [first, second] = words_of(profile, check);
+  return write(profile, unit, kept_register(profile).value(), {first, second});
+}
+
+Requests patch_check(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t check) {
+  const auto [first, second] = words_of(profile, check);
+  return write(profile, unit, kept_register(profile).value() + 2, {first, second});
+}
+
+ModbusRequest kept_request(const ModbusProfile& profile, std::uint8_t unit) {
+  return {unit, kReadRegisters, static_cast<std::uint16_t>(kept_register(profile).value()), kKeptRegisters, {}};
+}
+
+std::optional<KeptChecks> decode_kept(const ModbusProfile& profile, std::span<const std::uint16_t> registers) {
+  if (registers.size() != kKeptRegisters) return std::nullopt;
+  const auto word = [&](std::size_t at) {
+    const std::uint32_t high = registers[at + (profile.low_word_first ? 1 : 0)];
+    return (high << 16U) | registers[at + (profile.low_word_first ? 0 : 1)];
+  };
+  return KeptChecks{word(0), word(2)};
+}
+
 ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit, std::uint16_t count) {
   FL_CHECK(profile.status_register.has_value());
   FL_CHECK(count >= 1 && count <= kStatusRegisters);

@@ -24,6 +24,8 @@ inline constexpr std::uint8_t kWriteCoils = 0x0F;
 inline constexpr std::uint8_t kWriteRegisters = 0x10;
 inline constexpr int kLeadAfterHeartbeat = 2;  ///< registers between the two blocks
 inline constexpr std::uint16_t kStatusRegisters = 6;
+inline constexpr int kKeptAfterReaddress = 4;  ///< registers between the two blocks
+inline constexpr std::uint16_t kKeptRegisters = 8;
 inline constexpr std::uint16_t kNeededStatusRegisters = 4;  ///< the others are for people
 
 /// One write as the device takes it: one request, or one for each register or coil.
@@ -49,6 +51,15 @@ using Requests = std::vector<ModbusRequest>;
 /// Epoch and plan byte of the controller, behind the heartbeat. @param profile with a heartbeat register
 [[nodiscard]] Requests lead(const ModbusProfile& profile, std::uint8_t unit, std::uint8_t plan_byte,
                             std::uint32_t epoch);
+/// First of the registers that outlast power-off: our own marker has them behind those by which it takes an address.
+[[nodiscard]] std::optional<int> kept_register(const ModbusProfile& profile);
+/// Check of the plan, or of the patch, to what is kept. @param profile with a kept_register
+[[nodiscard]] Requests plan_check(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t check);
+[[nodiscard]] Requests patch_check(const ModbusProfile& profile, std::uint8_t unit, std::uint32_t check);
+/// Of a length that no question for the status has. @param profile with a kept_register
+[[nodiscard]] ModbusRequest kept_request(const ModbusProfile& profile, std::uint8_t unit);
+[[nodiscard]] std::optional<KeptChecks> decode_kept(const ModbusProfile& profile,
+                                                    std::span<const std::uint16_t> registers);
 /// @param profile with a status register  @param count 1..6, the first registers of the block
 [[nodiscard]] ModbusRequest status_request(const ModbusProfile& profile, std::uint8_t unit,
                                            std::uint16_t count = kStatusRegisters);

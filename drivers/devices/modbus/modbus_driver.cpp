@@ -51,6 +51,7 @@ Capabilities ModbusDriver::capabilities() const {
   // Without a latch register the driver itself holds the looks back until the latch of their sequence.
   can.sequenced_latch = profile_.has_preload_sequence || !profile_.latch_register;
   if (profile_.states) can.looks = profile_.states->count;
+  can.keeps_checks = modbus::kept_register(profile_).has_value();
   return can;
 }
 
@@ -267,8 +268,8 @@ Instant ModbusDriver::step(Instant now, EventSink& events) {
     if (!reply && !broadcast_over) return expected_ > now ? expected_ : now + kPollInterval;
     const Job job = *std::exchange(under_way_, std::nullopt);
     if (reply && job.request.unit != kBroadcast) finish(job, *reply, now, events);
-    const bool wrote =
-        job.purpose != Purpose::status && job.purpose != Purpose::read_back && job.purpose != Purpose::looks;
+    const bool wrote = job.purpose != Purpose::status && job.purpose != Purpose::read_back &&
+                       job.purpose != Purpose::looks && job.purpose != Purpose::kept;
     if (profile_.pause_after_write > Duration{} && wrote) {
       paused_ = true;
       pause_until_ = now + profile_.pause_after_write;
@@ -291,7 +292,8 @@ void ModbusDriver::submit_next(Instant now, EventSink& events) {
     jobs_.pop_front();
   } else if (status == SendStatus::down) {
     for (const Job& job : jobs_) {
-      if (job.purpose != Purpose::service) events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
+      if (job.purpose != Purpose::service && job.purpose != Purpose::kept)
+        events.on_event({DeviceEvent::Kind::missed, job.node, job.sequence});
     }
     service_.reset();
     jobs_.clear();
@@ -318,6 +320,7 @@ void ModbusDriver::finish(const Job& job, const ModbusReply& reply, Instant now,
       begin_quiet(now);
     return finish_service(job, service, events);
   }
+  if (job.purpose == Purpose::kept) return take_kept(job, reply, same, now, events);
   const bool question = job.purpose == Purpose::status || job.purpose == Purpose::read_back;
   if (reply.outcome == ModbusReply::Outcome::exception && same) {
     refuse(job, reply.exception_code, events);

@@ -71,16 +71,20 @@ class ModbusDriver final : public Driver {
   SendStatus heartbeat(Duration show_time, Instant now) override;
   SendStatus ask(const NodeAddress& node, Instant now) override;
   SendStatus upload_look(LookIndex index, const Look& look, Instant now) override;
+  SendStatus tell_plan(std::uint32_t check, Instant now) override;
+  SendStatus ask_kept(const NodeAddress& node, Instant now) override;
+  [[nodiscard]] Duration kept_time() const override;
   [[nodiscard]] std::string_view refusal(Task task) const override;
   SendStatus probe(std::uint16_t address, unsigned round, Instant now) override;
   SendStatus identify(std::uint16_t address, bool on, Instant now) override;
   SendStatus set_address(std::uint16_t from, std::optional<std::uint32_t> unique_id, std::uint16_t to,
                          Instant now) override;
   SendStatus ask_health(std::uint16_t address, Instant now) override;
+  SendStatus ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) override;
   Instant step(Instant now, EventSink& events) override;
 
  private:
-  enum class Purpose { preload, read_back, latch, late_write, heartbeat, status, looks, look, service };
+  enum class Purpose { preload, read_back, latch, late_write, heartbeat, status, looks, look, kept, service };
   struct Job {
     Purpose purpose = Purpose::status;
     NodeIndex node;  ///< of a request to one unit
@@ -129,6 +133,7 @@ class ModbusDriver final : public Driver {
   void ask_on(const Job& job, Purpose purpose, Instant now, EventSink& events);
   void tell_looks(const Job& job, const ModbusReply& reply, EventSink& events);
   void tell_bus(EventSink& events);
+  void take_kept(const Job& job, const ModbusReply& reply, bool same, Instant now, EventSink& events);
   void begin_quiet(Instant now);
   void end_quiet(Instant now);
   /// Of a length that no open question has; nothing when all are open.

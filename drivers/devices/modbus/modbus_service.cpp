@@ -55,6 +55,8 @@ std::string_view ModbusDriver::refusal(Task task) const {
       return profile_.health.empty() ? "the device's profile has no health registers" : std::string_view{};
     case Task::clock:
       return "Modbus devices keep no show time";
+    case Task::patch:
+      return modbus::kept_register(profile_) ? std::string_view{} : "only our own marker keeps plan and patch";
   }
   return {};
 }
@@ -137,6 +139,42 @@ SendStatus ModbusDriver::ask_health(std::uint16_t address, Instant now) {
   return serve(Task::health, address, std::move(requests), now);
 }
 
+SendStatus ModbusDriver::ask_patch(std::uint16_t address, std::optional<std::uint32_t> patch, Instant now) {
+  FL_CHECK(refusal(Task::patch).empty());
+  const auto unit = static_cast<std::uint8_t>(address);
+  modbus::Requests requests;
+  if (patch) requests = modbus::patch_check(profile_, unit, *patch);
+  requests.push_back(modbus::kept_request(profile_, unit));
+  return serve(Task::patch, address, std::move(requests), now);
+}
+
+SendStatus ModbusDriver::tell_plan(std::uint32_t check, Instant now) {
+  return run(to_all(Purpose::look, 0, [&](std::uint8_t unit) { return modbus::plan_check(profile_, unit, check); }),
+             now);
+}
+
+SendStatus ModbusDriver::ask_kept(const NodeAddress& node, Instant now) {
+  return run({{Purpose::kept, node.node, 0, modbus::kept_request(profile_, node.unit())}}, now);
+}
+
+Duration ModbusDriver::kept_time() const {
+  return modbus::kept_register(profile_) ? port_.wire_time(modbus::kept_request(profile_, 1)) : Duration{};
+}
+
+/// What it keeps is nothing of what it shows: no answer is no miss, though it may still come.
+void ModbusDriver::take_kept(const Job& job, const ModbusReply& reply, bool same, Instant now, EventSink& events) {
+  if (reply.outcome == ModbusReply::Outcome::exception && same) return;
+  const auto kept = modbus::decode_kept(profile_, reply.values);
+  if (reply.outcome != ModbusReply::Outcome::ok || !same || !kept) {
+    known_[job.node].owes = true;
+    begin_quiet(now);
+    return;
+  }
+  DeviceEvent event{DeviceEvent::Kind::keeps, job.node};
+  event.kept = *kept;
+  events.on_event(event);
+}
+
 void ModbusDriver::finish_service(const Job& job, const ModbusReply& reply, EventSink& events) {
   FL_CHECK(service_.has_value());
   const bool probing = service_->task == Task::probe;
@@ -167,6 +205,12 @@ void ModbusDriver::take_service(const Job& job, const ModbusReply& reply) {
     service_->identity.unique_id = (high << 16U) | low;
   } else if (service_->task == Task::probe && profile_.identity_register == first && job.request.count > 0) {
     service_->identity.model = profile_.identity_is_text ? text_of(reply.values) : numbers_of(reply.values);
+  } else if (service_->task == Task::patch && job.request.function == modbus::kReadRegisters) {
+    if (const auto kept = modbus::decode_kept(profile_, reply.values)) {
+      service_->kept = *kept;
+    } else {
+      service_->kind = Kind::garbled;
+    }
   } else if (service_->task == Task::health && reply.values.size() == 1) {
     for (const HealthRegister& entry : profile_.health) {
       if (entry.number != first) continue;

@@ -21,7 +21,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr NodeBoard::View kFine{0, NodeBoard::kRight};
+constexpr NodeBoard::View kFine{0, NodeBoard::kRight | NodeBoard::kSameChecks};
 constexpr NodeBoard::View kSilent{0, NodeBoard::kSilent};
 
 class Ears final : public Surface {
@@ -105,7 +105,46 @@ TEST_F(ReadinessSurfaceTest, NodesThatCannotBeReadBackAreAWarning) {
   const auto stages = readiness_->report();
   EXPECT_EQ(stages[3].state, State::success);
   EXPECT_EQ(stages[4].state, State::warning);
-  EXPECT_EQ(stages[4].text, "2 nodes confirm by sequence and check sum what this plan shows, 1 cannot be read back");
+  EXPECT_EQ(
+      stages[4].text,
+      "2 nodes confirm by sequence and check sum what this plan shows, 1 cannot be read back; 2 keep this plan and "
+      "patch; 1 keep none");
+}
+
+TEST_F(ReadinessSurfaceTest, ANodeOfAnotherPatchLocksGoAndIsNamed) {
+  open(Scope::live);
+  board_.put(0, {0, NodeBoard::kRight | NodeBoard::kOtherPatch});
+  board_.put(2, {0, NodeBoard::kRight | NodeBoard::kNoPatch});
+  (void)look();
+  const std::string wrong = "the patch of another rig or node is on: " + rig_.nodes[0].name +
+                            " (is it the node that the rig means? `footlight devices patch --write` when it is); no "
+                            "patch is on: " +
+                            rig_.nodes[2].name +
+                            " (`footlight devices patch --write` when its lamps are where the rig says)";
+  EXPECT_THAT(say("arm"), ElementsAre("arm: plan-on-nodes ERROR: " + wrong));
+  EXPECT_EQ(look().bars, controller::kNotReady);
+  EXPECT_THAT(say("override plan-on-nodes"), ElementsAre("plan-on-nodes is overridden by lines: " + wrong));
+  EXPECT_THAT(say("arm"), ElementsAre("GO is armed"));
+  board_.put(0, kFine);
+  board_.put(1, {0, NodeBoard::kRight | NodeBoard::kOtherPlan});
+  board_.put(2, kFine);
+  (void)look();
+  EXPECT_EQ(readiness_->report()[4].text,
+            "another plan is on: " + rig_.nodes[1].name + " (does another controller tell it?)");
+}
+
+TEST_F(ReadinessSurfaceTest, GoWaitsUntilEveryNodeHasToldWhatItKeeps) {
+  open(Scope::live);
+  board_.put(1, {0, NodeBoard::kRight});
+  (void)look();
+  EXPECT_THAT(say("arm"), ElementsAre("arm: plan-on-nodes WAITING: 3 nodes confirm by sequence and check sum what this "
+                                      "plan shows; 2 keep this plan and patch; 1 are asked for theirs"));
+  board_.put(1, kFine);
+  (void)look();
+  EXPECT_THAT(say("arm"), ElementsAre("GO is armed"));
+  board_.put(1, {0, NodeBoard::kRight});
+  (void)look();
+  EXPECT_EQ(readiness_->report()[4].state, State::success) << "a node that has restarted later stops nothing";
 }
 
 TEST_F(ReadinessSurfaceTest, WhereNobodyIsAtTheDeskItArmsItself) {

@@ -138,7 +138,7 @@ TEST(FrameReceiver, DropsWrongVersionsAndCommandsOfRightCheckSum) {
   strange.direction = static_cast<Direction>(0x82);
   EXPECT_TRUE(receive(receiver, encode(strange)).empty());
   strange = answer(7, {});
-  strange.command = static_cast<Command>(14);
+  strange.command = static_cast<Command>(15);
   EXPECT_TRUE(receive(receiver, encode(strange)).empty());
   EXPECT_EQ(receiver.dropped(), 2U);
 }
