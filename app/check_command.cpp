@@ -65,6 +65,7 @@ int run(Session& session, const Options& options) {
     session.print(shortest_text(show, planned->planned) + supplies_text(supplies));
   }
   if (refused) return session.fail(*refused);
+  if (const std::string unfenced = unfenced_text(planned->loaded.rig.buses); !unfenced.empty()) session.note(unfenced);
   if (options.devices) {
     if (auto wires = check_wires(session, planned->loaded.rig.buses); !wires) return session.fail(wires.error());
   }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "drivers/registry.hpp"
@@ -23,9 +24,11 @@ inline constexpr unsigned kBeatsALead = 4;
 /// The plan byte of a controller that leads under an epoch: never 0, and another one for the epoch after it.
 [[nodiscard]] std::uint8_t leading_byte(std::uint8_t plan_byte, std::uint32_t epoch);
 
-/// Whether nodes of this bus can fence: those of Footlight serial, and our own marker's registers. On CAN and DMX, and
-/// with foreign devices, nobody refuses an older controller.
+/// Whether nodes of this bus can fence: our own markers, whatever language they speak. DMX lamps, modules of outputs
+/// and foreign Modbus devices refuse nobody.
 [[nodiscard]] bool can_fence(const Bus& bus);
+/// Names of the buses on which nobody refuses another controller.
+[[nodiscard]] std::vector<std::string> unfenced(const std::vector<Bus>& buses);
 
 /// As `make_driver`, for a controller that leads. @param leadership borrowed for the life of the driver
 [[nodiscard]] Result<std::unique_ptr<Driver>> make_leading_driver(const Bus& bus, const std::vector<NodeAddress>& nodes,

@@ -43,8 +43,8 @@ DriverPointer make_serial(const Bus& /*bus*/, const Nodes& nodes, const Asked& a
   return std::make_unique<SerialDriver>(port_of_kind<ByteStream>(port), nodes, asked.plan_byte, asked.leadership);
 }
 
-DriverPointer make_canopen(const Bus& bus, const Nodes& nodes, const Asked& /*asked*/, PortReference port) {
-  return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes, bus.outputs);
+DriverPointer make_canopen(const Bus& bus, const Nodes& nodes, const Asked& asked, PortReference port) {
+  return std::make_unique<CanopenDriver>(port_of_kind<CanPort>(port), nodes, bus.outputs, asked.leadership);
 }
 
 DriverPointer make_modbus(const Bus& bus, const Nodes& nodes, const Asked& asked, PortReference port) {
@@ -226,10 +226,19 @@ Result<DriverPointer> make_leading_driver(const Bus& bus, const std::vector<Node
 
 bool can_fence(const Bus& bus) {
   if (bus.kind == BusKind::serial) return true;
+  if (bus.kind == BusKind::can) return !bus.outputs;
   if (bus.kind != BusKind::modbus_rtu && bus.kind != BusKind::modbus_tcp) return false;
   // Our own registers have sequences and a lease; a device that knows no LEAD drops its broadcast without a word.
   const ModbusProfile profile = profile_of(bus);
   return profile.has_preload_sequence && profile.heartbeat_register && profile.has_broadcast;
+}
+
+std::vector<std::string> unfenced(const std::vector<Bus>& buses) {
+  std::vector<std::string> names;
+  for (const Bus& bus : buses) {
+    if (!can_fence(bus)) names.push_back(bus.name);
+  }
+  return names;
 }
 
 std::uint8_t leading_byte(std::uint8_t plan_byte, std::uint32_t epoch) {

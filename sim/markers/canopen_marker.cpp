@@ -14,6 +14,7 @@ constexpr std::uint16_t kSdoRequest = 0x600;
 constexpr std::uint16_t kControllerHeartbeat = 0x77F;
 constexpr std::uint8_t kOperational = 5;
 constexpr std::uint16_t kPduTooShort = 0x8210;  // CiA 301, table 26: PDO not processed due to length error
+constexpr std::uint16_t kFenced = 0xFF01;       // device specific: docs/wire-protocol.md, lead
 constexpr std::uint8_t kGenericAndCommunicationError = 0x11;
 constexpr int kLooksPerPdo = 8;
 
@@ -26,6 +27,8 @@ void CanopenMarker::power_on() {
   nmt_ = NmtState::pre_operational;
   counters_ = {};
   sdo_.reset();
+  refuses_ = false;
+  tells_fence_ = false;
 }
 
 CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, Instant now) {
@@ -37,8 +40,7 @@ CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, I
     return Reaction::none;
   }
   if (frame.id == kMpdo) {
-    if (nmt_ != NmtState::stopped) take_mpdo(frame);
-    return Reaction::none;
+    return nmt_ == NmtState::stopped ? Reaction::none : take_mpdo(frame, now);
   }
   if (frame.id == kSdoRequest + id_) {
     if (nmt_ == NmtState::stopped || frame.length != 8) return Reaction::none;
@@ -46,7 +48,7 @@ CanopenMarker::Reaction CanopenMarker::receive(const drivers::CanFrame& frame, I
     if (answer) sdo_answer_ = *answer;
     return answer ? Reaction::sdo : Reaction::none;
   }
-  if (nmt_ != NmtState::operational) return Reaction::none;
+  if (nmt_ != NmtState::operational || refuses(now)) return Reaction::none;
   if (frame.id == kSync) {
     if (frame.length != 1 || frame.data[0] == 0 || frame.data[0] > kHighestSequence) return Reaction::none;
     model_.take_staged(frame.data[0], now);
@@ -78,22 +80,36 @@ CanopenMarker::Reaction CanopenMarker::take_pdo(int number, const drivers::CanFr
   const int wanted = std::min(kLooksPerPdo, model_.channels() - first);
   if (wanted <= 0) return Reaction::none;
   const bool was_wrong = counters_.error_register != 0;
+  tells_fence_ = false;
   counters_.error_register = frame.length < wanted ? kGenericAndCommunicationError : 0;
   if (frame.length < wanted) return Reaction::emergency;
   model_.stage(first, std::span(frame.data).first(static_cast<std::size_t>(wanted)));
   return was_wrong ? Reaction::emergency : Reaction::none;
 }
 
-void CanopenMarker::take_mpdo(const drivers::CanFrame& frame) {
+CanopenMarker::Reaction CanopenMarker::take_mpdo(const drivers::CanFrame& frame, Instant now) {
   const auto& data = frame.data;
   const bool to_me = data[0] == 0x80 || data[0] == (0x80 | id_);  // destination address mode, all nodes or this one
-  if (frame.length != 8 || !to_me || data[2] != 0x21) return;
+  if (frame.length != 8 || !to_me || data[2] != 0x21) return Reaction::none;
+  const std::uint32_t number =
+      data[4] | (std::uint32_t{data[5]} << 8U) | (std::uint32_t{data[6]} << 16U) | (std::uint32_t{data[7]} << 24U);
+  if (data[1] == 0x06 && data[3] == 0) return take_lead(number, now);
+  if (refuses(now)) return Reaction::none;
   if (data[1] == 0x00) model_.set_colour(data[3], Colour{data[6], data[5], data[4]});
   if (data[1] == 0x01) model_.set_effect(data[3], data[4], data[5]);
-  if (data[1] == 0x05 && data[3] == 1) {
-    model_.keep_plan(data[4] | (std::uint32_t{data[5]} << 8U) | (std::uint32_t{data[6]} << 16U) |
-                     (std::uint32_t{data[7]} << 24U));
-  }
+  if (data[1] == 0x05 && data[3] == 1) model_.keep_plan(number);
+  return Reaction::none;
+}
+
+/// Frames do not say whose they are: those that follow a refused LEAD are refused, until one is taken.
+CanopenMarker::Reaction CanopenMarker::take_lead(std::uint32_t epoch, Instant now) {
+  if (epoch == 0) return Reaction::none;
+  fenced_by_ = model_.epoch(now);
+  refuses_ = !model_.lead(epoch, 0, now);
+  if (!refuses_) return Reaction::none;
+  model_.drop_staged();
+  tells_fence_ = true;
+  return Reaction::emergency;
 }
 
 drivers::CanFrame CanopenMarker::status() const {
@@ -111,6 +127,13 @@ drivers::CanFrame CanopenMarker::heartbeat() const {
 drivers::CanFrame CanopenMarker::boot_up() const { return {static_cast<std::uint16_t>(0x700 + id_), 1, {}}; }
 
 drivers::CanFrame CanopenMarker::emergency() const {
+  if (tells_fence_) {
+    return {static_cast<std::uint16_t>(0x080 + id_),
+            8,
+            {low(kFenced), high(kFenced), counters_.error_register, static_cast<std::uint8_t>(fenced_by_),
+             static_cast<std::uint8_t>(fenced_by_ >> 8U), static_cast<std::uint8_t>(fenced_by_ >> 16U),
+             static_cast<std::uint8_t>(fenced_by_ >> 24U), 0}};
+  }
   const std::uint16_t code = counters_.error_register == 0 ? 0 : kPduTooShort;
   return {static_cast<std::uint16_t>(0x080 + id_), 8, {low(code), high(code), counters_.error_register}};
 }

@@ -36,7 +36,9 @@ class CanopenMarker final : public CanNode {
  private:
   Reaction manage(const drivers::CanFrame& frame, Instant now);
   Reaction take_pdo(int number, const drivers::CanFrame& frame);
-  void take_mpdo(const drivers::CanFrame& frame);
+  Reaction take_mpdo(const drivers::CanFrame& frame, Instant now);
+  [[nodiscard]] bool refuses(Instant now) const { return refuses_ && model_.epoch(now) != 0; }
+  Reaction take_lead(std::uint32_t epoch, Instant now);
 
   std::uint8_t id_;
   NodeModel& model_;
@@ -45,6 +47,9 @@ class CanopenMarker final : public CanNode {
   CanopenObjects objects_;
   SdoServer sdo_;
   drivers::CanFrame sdo_answer_;
+  bool refuses_ = false;      ///< who spoke last leads under an older epoch
+  bool tells_fence_ = false;  ///< the emergency to send is that of a refused LEAD
+  std::uint32_t fenced_by_ = 0;
 };
 
 }  // namespace footlight::sim

@@ -22,6 +22,7 @@ constexpr std::uint16_t kStatus = 0x2102;
 constexpr std::uint16_t kChannels = 0x2103;
 constexpr std::uint16_t kIdentify = 0x2104;
 constexpr std::uint16_t kKept = 0x2105;
+constexpr std::uint16_t kEpoch = 0x2106;
 constexpr std::uint16_t kOutputs = 0x6200;
 /// Sizes in bytes of 0x2102:1..5.
 constexpr std::array<int, 5> kStatusBytes{1, 1, 2, 2, 2};
@@ -139,6 +140,8 @@ CanopenObjects::Value CanopenObjects::own(std::uint16_t index, std::uint8_t sub)
       if (sub == 0) return {SdoAbort::none, 2, 1};
       if (sub > 2) return Value{SdoAbort::no_sub_index};
       return {SdoAbort::none, sub == 1 ? model_.plan_check() : model_.patch_check(), 4};
+    case kEpoch:
+      return sub == 0 ? Value{SdoAbort::none, model_.last_epoch(), 4} : Value{SdoAbort::no_sub_index};
     case kOutputs:
       if (sub == 0) return {SdoAbort::none, static_cast<std::uint32_t>(model_.channels()), 1};
       if (sub > model_.channels()) return Value{SdoAbort::no_sub_index};

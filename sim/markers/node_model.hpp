@@ -63,6 +63,9 @@ class NodeModel {
   /// @return true when anything was staged
   bool take_staged(std::uint8_t sequence, Instant now);
 
+  /// Forgets what was staged.
+  void drop_staged() { staged_ = false; }
+
   void heartbeat(Instant now);
   /// The controller of this epoch leads, with frames of this plan byte. @return false, and
   /// nothing happens, while one of a newer epoch does
@@ -71,6 +74,8 @@ class NodeModel {
   [[nodiscard]] bool fenced(std::uint8_t plan_byte, Instant now) const { return led(now) && plan_byte != leader_; }
   /// Of whoever leads; 0: nobody does.
   [[nodiscard]] std::uint32_t epoch(Instant now) const { return led(now) ? epoch_ : 0; }
+  /// Of whoever has led last since power-on; 0: nobody has.
+  [[nodiscard]] std::uint32_t last_epoch() const { return epoch_; }
   /// Lets the lease run out if it is time. Called at lease_end() and before anything is asked of the node.
   void settle(Instant now);
   /// When `settle` will change the state next; kNever: not by itself.

@@ -189,6 +189,27 @@ TEST(CanopenGolden, EveryFrameOfANodeIsUnderstood) {
   EXPECT_EQ(log.events[2].node, kSeven.node);
 }
 
+TEST(CanopenGolden, WhoLeadsSaysSoBeforeItsFirstFrame) {
+  const Golden golden("canopen.txt");
+  RecordingCan port;
+  Leadership leadership;
+  leadership.epoch = 0x00010203;
+  CanopenDriver driver(port, {kSeven}, {}, &leadership);
+  ASSERT_EQ(driver.heartbeat(kShowTime, kStart), SendStatus::accepted);
+  ASSERT_EQ(port.sent.size(), 2U);
+  EXPECT_EQ(port.sent[0], golden.frames("lead").front());
+  EXPECT_EQ(port.sent[1], golden.frames("heartbeat").front());
+  EventLog log;
+  port.incoming.push_back(golden.frames("fenced").front());
+  driver.step(kStart, log);
+  EXPECT_EQ(leadership.refusals.load(), 1U);
+  EXPECT_TRUE(log.events.empty()) << "that a node refuses another controller is no fault of the node";
+  port.in_queue = 0;
+  EXPECT_EQ(driver.latch(17, kStart), SendStatus::busy);
+  EXPECT_EQ(driver.heartbeat(kShowTime, kStart), SendStatus::busy);
+  EXPECT_EQ(port.sent.size(), 2U) << "nothing more";
+}
+
 TEST(CanopenGolden, WhatANodeKeepsIsAskedBesideEverythingElse) {
   const Golden golden("canopen.txt");
   RecordingCan port;

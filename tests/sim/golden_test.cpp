@@ -121,6 +121,34 @@ TEST_F(Golden, CanFramesAreUnderstoodAndAnswered) {
   EXPECT_EQ(seven.state(), NodeState::showing);
 }
 
+TEST_F(Golden, ANodeThatFollowsANewerEpochRefusesWhoeverComesWithAnOlderOne) {
+  const auto lines = golden("canopen.txt");
+  const auto one = [&](const char* name) { return can_frame(lines.find(name)->second); };
+  const auto hear = [&](CanopenMarker& marker, const char* name, Instant now) {
+    const auto [begin, end] = lines.equal_range(name);
+    for (auto line = begin; line != end; ++line) marker.receive(can_frame(line->second), now);
+  };
+  CanopenMarker marker(7, seven);
+  marker.power_on();
+  hear(marker, "start", kStart);
+  drivers::CanFrame newer = one("lead");
+  newer.data[4] = 0x04;
+  EXPECT_EQ(marker.receive(newer, kStart), CanopenMarker::Reaction::none);
+  EXPECT_EQ(marker.receive(one("lead"), kStart), CanopenMarker::Reaction::emergency);
+  EXPECT_EQ(marker.emergency(), one("fenced"));
+  for (const char* name : {"preload-32", "look", "plan-check", "latch"}) hear(marker, name, kStart);
+  EXPECT_EQ(seven.shown(1), 255) << "nothing of it is shown";
+  EXPECT_NE(seven.look(5), (Look{{0x7C, 0xFC, 0x00}, Effect::blink, 200}));
+  EXPECT_EQ(seven.plan_check(), 0U);
+  EXPECT_EQ(marker.receive(newer, kStart), CanopenMarker::Reaction::none);
+  for (const char* name : {"preload-32", "latch"}) hear(marker, name, kStart);
+  expect_looks_of_seven();
+  const Instant later = kStart + milliseconds(2600);
+  EXPECT_EQ(marker.receive(one("lead"), later), CanopenMarker::Reaction::none) << "the newer one has gone";
+  hear(marker, "look", later);
+  expect_look_five();
+}
+
 TEST_F(Golden, SdoRequestsAreAnswered) {
   const auto lines = golden("canopen.txt");
   CanopenMarker marker(7, seven);

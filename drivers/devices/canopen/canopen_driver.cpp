@@ -16,6 +16,7 @@ constexpr std::size_t kWindow = 8;
 constexpr std::size_t kMostFrames = 4;  // of one operation
 constexpr int kFramesPerStep = 256;     // a flood must not keep us from sending
 constexpr Duration kSilence = milliseconds(2500);
+constexpr Duration kAway = milliseconds(600);  // more than two heartbeats: the machine stood still, or its cue thread
 constexpr Duration kLongestTurnaround = milliseconds(5);
 constexpr Duration kNodeHeartbeatPeriod = milliseconds(1000);
 constexpr Duration kMargin = milliseconds(10);     // scheduling of the machine, a late node
@@ -29,8 +30,8 @@ constexpr std::uint8_t kPreOperational = 127;
 }  // namespace
 
 CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes,
-                             const std::optional<OutputModule>& modules)
-    : port_(port) {
+                             const std::optional<OutputModule>& modules, Leadership* leadership)
+    : port_(port), leadership_(leadership) {
   if (modules) setup_.emplace(*modules, nodes);
   lit_.fill(true);
   lit_[kDark] = false;
@@ -71,12 +72,15 @@ Duration CanopenDriver::latch_time() const {
   return port_.wire_time(setup_ ? canopen::plain_sync() : canopen::sync(kLastSequence));
 }
 
-Duration CanopenDriver::heartbeat_time() const { return port_.wire_time(canopen::controller_heartbeat()); }
+Duration CanopenDriver::heartbeat_time() const {
+  const Duration lead = leadership_ == nullptr ? Duration{} : port_.wire_time(canopen::lead(0));
+  return lead + port_.wire_time(canopen::controller_heartbeat());
+}
 
 Duration CanopenDriver::node_heartbeats_time() const {
   const Duration period = setup_ ? setup_->module().heartbeat : kNodeHeartbeatPeriod;
   const double in_one_period = static_cast<double>(kHeartbeatPeriod.count()) / static_cast<double>(period.count());
-  const auto all = static_cast<Duration::rep>(nodes_.size()) * heartbeat_time();  // of the same length
+  const auto all = static_cast<Duration::rep>(nodes_.size()) * port_.wire_time(canopen::controller_heartbeat());
   return Duration(static_cast<Duration::rep>(static_cast<double>(all.count()) * in_one_period));
 }
 
@@ -143,6 +147,7 @@ SendStatus CanopenDriver::latch(Sequence sequence, Instant now) {
 }
 
 SendStatus CanopenDriver::heartbeat(Duration /*show_time*/, Instant /*now*/) {
+  lead_due_ = lead_due_ || (leadership_ != nullptr && beats_since_lead_++ % kBeatsALead == 0);
   return hand_over(canopen::controller_heartbeat());
 }
 
@@ -169,6 +174,13 @@ SendStatus CanopenDriver::upload_look(LookIndex index, const Look& look, Instant
 }
 
 SendStatus CanopenDriver::hand_over(const CanFrame& frame) {
+  if (silent_) return SendStatus::busy;
+  if (lead_due_) {
+    const SendStatus led = port_.send(canopen::lead(leadership_->epoch));
+    if (led != SendStatus::accepted) return down() ? SendStatus::down : led;
+    ++handed_over_;
+    lead_due_ = false;
+  }
   const SendStatus status = port_.send(frame);
   if (status == SendStatus::accepted) ++handed_over_;
   return down() ? SendStatus::down : status;
@@ -206,7 +218,29 @@ void CanopenDriver::pump() {
   }
 }
 
+/// It is another controller's; which one leads is a matter of the epoch alone.
+void CanopenDriver::hear_lead(std::uint32_t epoch, Instant now) {
+  if (leadership_ == nullptr || epoch == leadership_->epoch) return;
+  if (epoch > leadership_->epoch) return fall_silent(now);
+  lead_due_ = true;
+}
+
+void CanopenDriver::fall_silent(Instant now) {
+  leadership_->refusals.fetch_add(1, std::memory_order_relaxed);
+  silent_ = true;
+  silent_until_ = now + kSilence;
+  outbox_.clear();
+  leaving_.reset();
+}
+
 Instant CanopenDriver::step(Instant now, EventSink& events) {
+  // Who was away may have been replaced: that is asked before anything else is said.
+  if (leadership_ != nullptr && stepped_at_ != kNever && now - stepped_at_ > kAway) lead_due_ = true;
+  stepped_at_ = now;
+  if (silent_ && now >= silent_until_) {
+    silent_ = false;
+    lead_due_ = true;
+  }
   CanFrame frame;
   int heard = 0;
   while (heard < kFramesPerStep && port_.receive(frame)) {
@@ -232,6 +266,7 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
 }
 
 void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) {
+  if (const auto epoch = canopen::lead_in(frame)) return hear_lead(*epoch, now);
   hear_sdo(frame, now);
   if (setup_) setup_->hear(frame, now);
   const canopen::Heard heard = canopen::decode(frame);
@@ -244,6 +279,8 @@ void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) 
         if (!setup_) hear_status(*node, message, events);  // of a module it says what its inputs are
       } else if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::NodeHeartbeat>) {
         hear_heartbeat(*node, message.state, events);
+      } else if (message.code == canopen::kFencedEmergency && leadership_ != nullptr) {
+        fall_silent(now);
       } else if (message.code != 0) {
         DeviceEvent event{DeviceEvent::Kind::rejected, node->address.node};
         event.detail = message.code;

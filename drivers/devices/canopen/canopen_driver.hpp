@@ -12,6 +12,7 @@
 #include "drivers/devices/canopen/module_setup.hpp"
 #include "drivers/devices/canopen/sdo_client.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/leading.hpp"
 
 namespace footlight::drivers {
 
@@ -26,14 +27,19 @@ namespace footlight::drivers {
 /// started, and again after it has booted; until then its preloads are `rejected` for later, and for ever once it has
 /// refused an object (complaints()). RPDO1 preloads and SYNC latches as well, but nothing proves what is shown.
 ///
+/// A driver that leads says its epoch before its first frame, once a second, when it was away for a while and when it
+/// hears an older one. CAN frames do not say whose they are, but everybody hears everybody: a driver that hears a newer
+/// epoch, or a node's refusal, sends nothing more for as long as a fence stands, not even what waits in its outbox.
+///
 /// A bus on which nothing leaves is down (CanState::stalled and beyond; the event's detail is the state). Then nothing
 /// but heartbeats is put on it, to find out when it is back: what stands in a queue for so long comes too late, and of
 /// a heartbeat that does no harm.
 class CanopenDriver final : public Driver {
  public:
   /// @param port borrowed for the life of the driver
-  /// @param modules absent: our own markers
-  CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes, const std::optional<OutputModule>& modules = {});
+  /// @param modules absent: our own markers  @param leadership borrowed; null: it leads without an epoch
+  CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes, const std::optional<OutputModule>& modules = {},
+                Leadership* leadership = nullptr);
 
   [[nodiscard]] std::string_view language() const override { return "canopen"; }
   [[nodiscard]] Capabilities capabilities() const override;
@@ -100,6 +106,8 @@ class CanopenDriver final : public Driver {
     std::uint64_t last_frame = 0;  ///< count of frames handed to the port, with its own last one
   };
 
+  void hear_lead(std::uint32_t epoch, Instant now);
+  void fall_silent(Instant now);
   void set_up_on(Instant now, EventSink& events);
   /// Of one node's answer, or of any frame of its length.
   [[nodiscard]] Duration frame_time() const { return port_.wire_time(canopen::status_pdo_shape()); }
@@ -121,6 +129,12 @@ class CanopenDriver final : public Driver {
   [[nodiscard]] NodeState* find(std::uint8_t address);
 
   CanPort& port_;
+  Leadership* leadership_;  ///< null: it leads without an epoch
+  unsigned beats_since_lead_ = 0;
+  bool lead_due_ = false;          ///< before anything else
+  Instant stepped_at_ = kNever;    ///< last; kNever: not yet
+  Instant silent_until_ = kStart;  ///< another controller leads
+  bool silent_ = false;
   std::vector<NodeState> nodes_;
   std::array<std::int16_t, 128> by_address_{};  ///< -1: not ours
   std::deque<CanFrame> outbox_;                 ///< accepted by us, not yet by the port

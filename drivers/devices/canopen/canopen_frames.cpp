@@ -73,6 +73,18 @@ CanFrame plan_check(std::uint32_t check) {
   return frame_of(kMultiplexed, {kToAllNodes, 0x05, 0x21, 1, byte(0), byte(1), byte(2), byte(3)});
 }
 
+CanFrame lead(std::uint32_t epoch) {
+  const auto byte = [&](unsigned i) { return static_cast<std::uint8_t>(epoch >> (8U * i)); };
+  return frame_of(kMultiplexed, {kToAllNodes, 0x06, 0x21, 0, byte(0), byte(1), byte(2), byte(3)});
+}
+
+std::optional<std::uint32_t> lead_in(const CanFrame& frame) {
+  const auto& data = frame.data;
+  if (frame.kind != CanFrame::Kind::classic || frame.id != kMultiplexed || frame.length != 8) return std::nullopt;
+  if (data[0] != kToAllNodes || data[1] != 0x06 || data[2] != 0x21 || data[3] != 0) return std::nullopt;
+  return little_endian(frame, 4) | (std::uint32_t{little_endian(frame, 6)} << 16U);
+}
+
 Heard decode(const CanFrame& frame) {
   const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
   if (frame.kind != CanFrame::Kind::classic || frame.id > 0x7FF || node < 1 || node > kLastNode) return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -37,6 +38,13 @@ enum class NmtCommand : std::uint8_t {
 [[nodiscard]] std::vector<CanFrame> look_entry(LookIndex index, const Look& look);
 /// Check of the plan (object 0x2105:1), to all nodes.
 [[nodiscard]] CanFrame plan_check(std::uint32_t check);
+
+/// Epoch of the controller that speaks (object 0x2106), to all nodes and to other controllers.
+[[nodiscard]] CanFrame lead(std::uint32_t epoch);
+/// Of a LEAD that was heard; nothing for any other frame.
+[[nodiscard]] std::optional<std::uint32_t> lead_in(const CanFrame& frame);
+/// EMCY of a node that has refused a LEAD.
+inline constexpr std::uint16_t kFencedEmergency = 0xFF01;
 
 /// TPDO1 of a node.
 struct StatusPdo {

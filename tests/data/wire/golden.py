@@ -159,6 +159,8 @@ write("canopen.txt", ["As candump -L writes frames. Node 7 has 32 channels, node
     ("SDO: 1 into 0x2104 of node 7, expedited: identify", "sdo-identify", can(ASK, sdo(0x2F, 0x2104, 0, [1]))),
     ("", "sdo-identify-answer", can(ANSWER, sdo(0x60, 0x2104))),
     ("MPDO: plan check 0x89ABCDEF into 0x2105:1 of all nodes", "plan-check", can(0x1FF, [0x80, 0x05, 0x21, 1, 0xEF, 0xCD, 0xAB, 0x89])),
+    ("MPDO: LEAD of epoch 0x00010203 (object 0x2106)", "lead", can(0x1FF, [0x80, 0x06, 0x21, 0, 0x03, 0x02, 0x01, 0x00])),
+    ("EMCY 0xFF01 of node 7: it follows epoch 0x00010204", "fenced", can(0x087, [0x01, 0xFF, 0x00, 0x04, 0x02, 0x01, 0x00, 0])),
     ("SDO: patch check 0x12345678 into 0x2105:2 of node 7, then both are read", "sdo-patch", can(ASK, sdo(0x23, 0x2105, 2, struct.pack("<I", 0x12345678)))),
     ("", "sdo-patch", can(ASK, sdo(0x40, 0x2105, 1))),
     ("", "sdo-patch", can(ASK, sdo(0x40, 0x2105, 2))),
