@@ -51,14 +51,18 @@ Rig with_simulated_buses(Rig rig) {
 }
 
 Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated, const Rig& rig,
-                                                                 const Plan& plan, LoggedPorts* logged) {
+                                                                 const Plan& plan, LoggedPorts* logged,
+                                                                 drivers::Leadership* leadership) {
   std::vector<std::unique_ptr<drivers::Driver>> out;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const auto bus = BusIndex::of(b);
     drivers::PortReference port = port_of(simulated, rig, bus);
     if (logged != nullptr) port = logged->before(b, rig.buses[b].kind, port);
-    auto driver =
-        drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, bus), controller::plan_byte_of(plan), port);
+    auto driver = leadership == nullptr
+                      ? drivers::make_driver(rig.buses[b], drivers::node_addresses(rig, bus),
+                                             controller::plan_byte_of(plan), port)
+                      : drivers::make_leading_driver(rig.buses[b], drivers::node_addresses(rig, bus),
+                                                     controller::plan_byte_of(plan), port, *leadership);
     if (!driver) return std::move(driver).error();
     out.push_back(std::move(driver).value());
   }
@@ -70,7 +74,9 @@ Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
   const Rig wires = with_simulated_buses(rig);
   ManualClock clock;
   sim::SimulatedRig simulated(wires, {}, 1, clock, nullptr);
-  const auto drivers = drivers_on(simulated, wires, plan);
+  drivers::Leadership leadership;
+  leadership.epoch = 1;
+  const auto drivers = drivers_on(simulated, wires, plan, nullptr, &leadership);
   if (!drivers) return drivers.error();
   const auto schedule = controller::build_schedule(show, plan, wires, *drivers);
   if (!schedule) return schedule.error();

@@ -13,6 +13,7 @@
 #include "core/rig.hpp"
 #include "core/show.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/leading.hpp"
 #include "drivers/registry.hpp"
 #include "sim/simulated_rig.hpp"
 
@@ -26,9 +27,10 @@ namespace footlight::app {
 
 /// The real drivers on simulated buses, one for each bus of the rig. Errors: addresses that a bus cannot have.
 /// @param logged stands between drivers and buses where it is given, and outlives the drivers
-[[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(sim::SimulatedRig& simulated,
-                                                                               const Rig& rig, const Plan& plan,
-                                                                               LoggedPorts* logged = nullptr);
+/// @param leadership under which they lead, likewise; null: without an epoch, and no LEAD is on the wire
+[[nodiscard]] Result<std::vector<std::unique_ptr<drivers::Driver>>> drivers_on(
+    sim::SimulatedRig& simulated, const Rig& rig, const Plan& plan, LoggedPorts* logged = nullptr,
+    drivers::Leadership* leadership = nullptr);
 
 /// A show's schedule, and the simulated buses that it is built for.
 struct SimulatedSchedule {
@@ -37,8 +39,8 @@ struct SimulatedSchedule {
   const controller::CueSchedule& schedule;
 };
 
-/// Builds the schedule of a valid plan on simulated buses, and lends it to `use` (which may be empty). Nothing is
-/// played. Errors: as build_schedule.
+/// Builds the schedule of a valid plan on simulated buses, and lends it to `use` (which may be empty). Budgets are
+/// those of a run, which leads. Nothing is played. Errors: as build_schedule.
 [[nodiscard]] Status<> with_schedule(const Show& show, const Plan& plan, const Rig& rig,
                                      const std::function<void(const SimulatedSchedule&)>& use);
 

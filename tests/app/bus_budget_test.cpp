@@ -165,5 +165,26 @@ TEST(BusBudget, RegressionASlowBusThatIsAcceptedIsNeverLate) {
   }
 }
 
+TEST(BusBudget, OfAShowThatIsCheckedHasTheFramesByWhichARunLeads) {
+  for (const BusKind kind : {BusKind::serial, BusKind::modbus_rtu}) {
+    const SmallShow small = slow_show(kind, 19'200, 4);
+    Wire wire(small);
+    std::vector<BusNeed> checked;
+    const auto look = [&](const SimulatedSchedule& built) {
+      const std::vector<Duration> gaps(small.show.cues.size(), controller::kShortestHold);
+      checked = controller::bus_needs(built.schedule, built.wires, built.drivers, gaps);
+    };
+    const auto built = with_schedule(small.show, small.plan, small.rig, look);
+    ASSERT_TRUE(built) << built.error().message;
+    ASSERT_EQ(checked.size(), wire.needs().size());
+    for (std::size_t i = 0; i < checked.size(); ++i) {
+      const BusNeed& plain = wire.needs()[i];
+      EXPECT_EQ(checked[i].heartbeats, plain.heartbeats);
+      EXPECT_EQ(checked[i].preloads, plain.preloads);
+      if (plain.heartbeats > 0) EXPECT_GT(checked[i].beating, plain.beating) << "LEAD goes with heartbeats";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace footlight::app
