@@ -267,12 +267,19 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             self.assertEqual(desk.process.wait(60), 2)
             self.play("--gates-by-people")
 
+        def wait_for_stage(self, desk, name, state):
+            """@return what it says then"""
+            stage = lambda: next(s for s in desk.state["readiness"]["stages"] if s["name"] == name)
+            wait_for(lambda: stage()["state"] == state, f"{name} to be {state}, not {stage()}")
+            return stage()["text"]
+
         def test_a_live_run_asks_for_three_lamps_and_refuses_go_until_it_is_armed(self):
             self.make_show()
             self.serve()
             desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
             desk.say("", "yes", "yes", "yes")
             desk.until("roll call", ready=True)
+            self.wait_for_stage(desk, "plan-on-nodes", "SUCCESS")
             desk.say("go")
             wait_for(lambda: any("the show is not ready: nobody has said arm" in text for text in desk.answers()), "the refusal")
             stages = {s["name"]: s["state"] for s in desk.state["readiness"]["stages"]}
@@ -293,6 +300,7 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
             desk.say("yes", "no")
             desk.until("roll call", ready=True)
+            self.wait_for_stage(desk, "plan-on-nodes", "SUCCESS")
             desk.say("arm")
             wait_for(lambda: any("arm: probes ERROR" in text for text in desk.answers()), "the refusal")
             desk.say("override probes", "arm", "go")
@@ -311,10 +319,9 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
             desk.say("yes", "yes", "yes")
             desk.until("roll call", ready=True)
-            stage = lambda: next(s for s in desk.state["readiness"]["stages"] if s["name"] == "plan-on-nodes")
-            wait_for(lambda: stage()["state"] == "ERROR", f"the other patch to be found, not {stage()}")
-            self.assertIn("the patch of another rig or node is on: ", stage()["text"])
-            self.assertIn("left-1", stage()["text"])
+            text = self.wait_for_stage(desk, "plan-on-nodes", "ERROR")
+            self.assertIn("the patch of another rig or node is on: ", text)
+            self.assertIn("left-1", text)
             desk.say("arm", "go")
             wait_for(lambda: any("arm: plan-on-nodes ERROR" in text for text in desk.answers()), "the refusal")
             wait_for(lambda: any("the show is not ready" in text for text in desk.answers()), "the refused GO")
@@ -329,8 +336,7 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             desk = Desk(self, program(), "--count-in", "0", "--scope", "live")
             desk.say("yes", "yes", "yes")
             desk.until("roll call", ready=True)
-            wait_for(lambda: stage()["state"] == "SUCCESS", f"the rig's patch on every node, not {stage()}")
-            self.assertIn("keep this plan and patch", stage()["text"])
+            self.assertIn("keep this plan and patch", self.wait_for_stage(desk, "plan-on-nodes", "SUCCESS"))
             desk.say("arm", "quit")
             wait_for(lambda: "GO is armed" in desk.answers(), "arm")
             desk.process.wait(20)

@@ -31,7 +31,7 @@ constexpr std::uint8_t kPreOperational = 127;
 
 CanopenDriver::CanopenDriver(CanPort& port, const std::vector<NodeAddress>& nodes,
                              const std::optional<OutputModule>& modules, Leadership* leadership)
-    : port_(port), leadership_(leadership) {
+    : port_(port), leadership_(leadership), lead_due_(leadership != nullptr) {
   if (modules) setup_.emplace(*modules, nodes);
   lit_.fill(true);
   lit_[kDark] = false;
@@ -92,6 +92,7 @@ Duration CanopenDriver::upload_time() const {
 }
 
 bool CanopenDriver::ready() const {
+  if (silent_ && !down()) return false;
   // A module's preload has no receipt and no answer to its latch: here nothing else may stand before the latch.
   if (setup_ && !down() && port_.queued() > 0) return false;
   return down() || (outbox_.empty() && (!service_ || service_->of_show) &&
@@ -147,7 +148,7 @@ SendStatus CanopenDriver::latch(Sequence sequence, Instant now) {
 }
 
 SendStatus CanopenDriver::heartbeat(Duration /*show_time*/, Instant /*now*/) {
-  lead_due_ = lead_due_ || (leadership_ != nullptr && beats_since_lead_++ % kBeatsALead == 0);
+  lead_due_ = lead_due_ || (leadership_ != nullptr && ++beats_since_lead_ % kBeatsALead == 0);
   return hand_over(canopen::controller_heartbeat());
 }
 
@@ -261,6 +262,7 @@ Instant CanopenDriver::step(Instant now, EventSink& events) {
   if (!down() && (leaving || starting || not_ready)) next = std::min(next, now + frame_time());
   if (setup_ && !down() && started_) next = std::min(next, std::max(now, setup_->next()));
   if (service_) next = std::min(next, service_->deadline);
+  if (silent_) next = std::min(next, silent_until_);
   if (down() || port_.queued() > 0) next = std::min(next, now + kLookAtBus);
   return heard == kFramesPerStep ? now : next;
 }
@@ -280,7 +282,8 @@ void CanopenDriver::hear(const CanFrame& frame, Instant now, EventSink& events) 
       } else if constexpr (std::is_same_v<std::decay_t<decltype(message)>, canopen::NodeHeartbeat>) {
         hear_heartbeat(*node, message.state, events);
       } else if (message.code == canopen::kFencedEmergency && leadership_ != nullptr) {
-        fall_silent(now);
+        hear_lead(message.epoch, now);  // whoever was refused
+        lead_due_ = lead_due_ || message.epoch == leadership_->epoch;
       } else if (message.code != 0) {
         DeviceEvent event{DeviceEvent::Kind::rejected, node->address.node};
         event.detail = message.code;

@@ -91,7 +91,8 @@ Heard decode(const CanFrame& frame) {
   switch (frame.id - node) {
     case kEmergency:
       if (frame.length != 8) return {};
-      return Emergency{node, little_endian(frame, 0)};
+      return Emergency{node, little_endian(frame, 0),
+                       little_endian(frame, 3) | (std::uint32_t{little_endian(frame, 5)} << 16U)};
     case kStatus:
       if (frame.length != 8) return {};
       return StatusPdo{node,

@@ -62,7 +62,8 @@ struct NodeHeartbeat {
 };
 struct Emergency {
   std::uint8_t node = 0;
-  std::uint16_t code = 0;  ///< 0: the error is over
+  std::uint16_t code = 0;   ///< 0: the error is over
+  std::uint32_t epoch = 0;  ///< kFencedEmergency: that the node follows
 };
 /// monostate: not a whole frame of ours.
 using Heard = std::variant<std::monostate, StatusPdo, NodeHeartbeat, Emergency>;

@@ -100,7 +100,7 @@ TEST_F(ReadinessSurfaceTest, SilentNodesAreNamedAndOverridden) {
 
 TEST_F(ReadinessSurfaceTest, NodesThatCannotBeReadBackAreAWarning) {
   open(Scope::live);
-  board_.put(2, {NodeBoard::kNothingYet, NodeBoard::kUnverified});
+  board_.put(2, {NodeBoard::kNothingYet, NodeBoard::kUnverified | NodeBoard::kNoChecks});
   (void)look();
   const auto stages = readiness_->report();
   EXPECT_EQ(stages[3].state, State::success);
