@@ -328,7 +328,9 @@ int run(Session& session, const Options& options) {
   if (!time) return session.fail(time.error());
   const auto ports = open_ports(rig);
   if (!ports) return session.fail(ports.error());
-  readiness.tell(Readiness::Stage::buses, Readiness::State::success, fmt::format("{} open", rig.buses.size()));
+  const std::string unfenced = unfenced_text(rig.buses);
+  readiness.tell(Readiness::Stage::buses, unfenced.empty() ? Readiness::State::success : Readiness::State::warning,
+                 fmt::format("{} open{}{}", rig.buses.size(), unfenced.empty() ? "" : "; ", unfenced));
   if (const auto changed = wipe_note(state_folder(options.state), options.choice.show, rig)) session.note(*changed);
   Traces traces(session, options, *planned, rig);
   std::optional<GrowingFile> file;
