@@ -33,8 +33,9 @@ bool BusLoop::act() noexcept {
   }
   if (in_hurry() && preload_next()) return true;
   // After a death nodes mostly show what they should, and have the looks: a question tells sooner than an upload mends.
-  return verify(true) || upload(true) || verify(false) || ask_quarantined(true) || repair() || (can_.sequenced_latch && preload_next()) ||
-         ask_quarantined(false) || send_content() || check_plan() || refresh() || upload(false);
+  return verify(true) || upload(true) || verify(false) || ask_quarantined(true) || repair() ||
+         (can_.sequenced_latch && preload_next()) || ask_quarantined(false) || send_content() || check_plan() ||
+         refresh() || upload(false);
 }
 
 bool BusLoop::took(drivers::SendStatus status, Operation operation, Duration time) noexcept {
