@@ -14,6 +14,7 @@
 #include "app/plan_summary.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/supply_figures.hpp"
+#include "app/readiness/readiness.hpp"
 #include "app/wire_check.hpp"
 
 namespace footlight::app {

@@ -2,15 +2,16 @@
 #include "app/run_command.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,7 @@
 #include "app/reset_way.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/sound/heard_count_in.hpp"
+#include "app/speaking.hpp"
 #include "app/state_folder.hpp"
 #include "app/surfaces/prompt_desk.hpp"
 #include "app/surviving/supervisor.hpp"
@@ -35,14 +37,18 @@
 #include "app/time/time_options.hpp"
 #include "app/wire_check.hpp"
 #include "app/wire_log/wire_recorder.hpp"
+#include "app/writer_thread.hpp"
 #include "config/output_file.hpp"
 #include "config/plan_digest.hpp"
 #include "config/transport_map.hpp"
 #include "core/clock.hpp"
+#include "core/file_descriptor.hpp"
 
 namespace footlight::app {
 namespace {
 
+constexpr Duration kPortsWithin = milliseconds(10'000);
+constexpr Duration kPortsAgain = milliseconds(50);
 constexpr Duration kSilence = milliseconds(2000);  // of the cue thread, before it is taken for dead
 
 struct Options {
@@ -100,6 +106,18 @@ Result<std::vector<drivers::Port>> open_ports(const Rig& rig) {
   return ports;
 }
 
+/// A run that is taken up may find a port that the kernel, or a hub, has not given back yet.
+Result<std::vector<drivers::Port>> open_ports_again(Session& session, const Rig& rig, bool taken_up) {
+  const SteadyClock clock;
+  const Instant until = clock.now() + (taken_up ? kPortsWithin : Duration{});
+  auto ports = open_ports(rig);
+  while (!ports && ports.error().kind == ErrorKind::device && clock.now() < until && !session.stopped()) {
+    std::this_thread::sleep_for(kPortsAgain);
+    ports = open_ports(rig);
+  }
+  return ports;
+}
+
 std::string nodes_text(std::size_t nodes) { return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s"); }
 
 /// What this run leaves behind for `footlight bundle`. A disk that takes nothing costs a note, not the show.
@@ -109,7 +127,10 @@ class Traces {
       : session_(session), folder_(state_folder(options.state)) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    moments_.open(folder_ / "moments.txt", std::ios::trunc);
+    const auto file = std::make_shared<FileDescriptor>(
+        ::open((folder_ / "moments.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    moments_ = std::make_unique<WriterThread>(
+        [file](std::string_view text) { return WriterThread::write_all(file->get(), text); });
     nlohmann::ordered_json run{{"version", FOOTLIGHT_VERSION},
                                {"started_since_1970_s", to_seconds(wall_time())},
                                {"show", std::filesystem::absolute(options.choice.show).string()},
@@ -119,7 +140,7 @@ class Traces {
     write("run.json", run.dump(2) + "\n");
     std::filesystem::remove(folder_ / "report.json", error);
   }
-  void moment(const std::string& line) { moments_ << line << std::endl; }
+  void moment(const std::string& line) { moments_->put(line + "\n"); }
   void write(const char* name, const std::string& text) {
     if (auto written = config::write_file(folder_ / name, text); !written) session_.note(written.error().message);
   }
@@ -129,7 +150,7 @@ class Traces {
  private:
   Session& session_;
   std::filesystem::path folder_;
-  std::ofstream moments_;
+  std::unique_ptr<WriterThread> moments_;
 };
 
 void tell_limits(Session& session, const Show& show, const Plan& plan,
@@ -186,14 +207,17 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   NodeBoard board(rig.nodes.size());
   live.nodes = *console ? &(*console)->nodes() : &board;
   Surviving surviving(journal, std::filesystem::absolute(options.choice.show).string(),
-                      config::digest_of(planned.plan()), rig, live.nodes, epoch);
+                      config::digest_of(planned.plan()), epoch);
   if (auto opened = surviving.open_door(options.surviving, [&](const std::string& line) { session.note(line); });
       !opened) {
     return std::move(opened).error();
   }
   surviving.join(desk);
+  live.heartbeat = [&](const ShowState& state, bool roll_called) { surviving.beat(state, roll_called); };
   live.epoch = epoch;
-  ReadinessSurface ready(readiness, rig, *live.nodes, desk, options.go);
+  BusHealth health(rig, *live.nodes, desk, [&](const std::string& line) { surviving.journal().health_is(line); });
+  desk.add(health);
+  ReadinessSurface ready(readiness, rig, *live.nodes, health, desk, options.go);
   desk.add(ready);
   if (cut) surviving.take_up(*cut, options.surviving.after, desk, live);
   live.changes = &editing;
@@ -282,7 +306,7 @@ Attendance attendance_of(const Options& options, PlanChoice& choice) {
   return take_up_taken(folder, choice);
 }
 
-int run(Session& session, const Options& options) {
+int run_show(Session& session, const Options& options) {
   if (options.surviving.supervised) {
     return supervise("/proc/self/exe", own_arguments(), kSilence, [&](const std::string& line) { session.note(line); });
   }
@@ -326,7 +350,7 @@ int run(Session& session, const Options& options) {
   const SteadyClock clock;
   const auto time = options.time.open(planned->loaded.show, options.go, clock);
   if (!time) return session.fail(time.error());
-  const auto ports = open_ports(rig);
+  const auto ports = open_ports_again(session, rig, cut.has_value());
   if (!ports) return session.fail(ports.error());
   const std::string unfenced = unfenced_text(rig.buses);
   readiness.tell(Readiness::Stage::buses, unfenced.empty() ? Readiness::State::success : Readiness::State::warning,
@@ -358,6 +382,14 @@ int run(Session& session, const Options& options) {
   }
   if (report->unconfirmed > 0) return session.fail(device_error(live_failure(*report)));
   return 0;
+}
+
+/// Nobody who leads the show waits for who reads what it says.
+int run(Session& session, const Options& options) {
+  Speaking speaking;
+  const int status = run_show(session, options);
+  const auto said = speaking.end();
+  return said || status != 0 ? status : session.fail(said.error());
 }
 
 }  // namespace

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "app/speaking.hpp"
 #include "app/surfaces/raw_terminal.hpp"
 
 namespace footlight::app {
@@ -24,7 +26,7 @@ extern "C" void on_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-void write(std::FILE* file, std::string_view text) { std::fwrite(text.data(), 1, text.size(), file); }
+void write(std::FILE* file, std::string_view text) { (void)Speaking::say(file, text); }
 
 }  // namespace
 
@@ -60,8 +62,8 @@ void Session::add_options(CLI::App& command, bool with_json) {
 }
 
 void Session::print(std::string_view text) const {
-  write(stdout, text);
-  if (text.empty() || text.back() != '\n') write(stdout, "\n");
+  const bool ended = !text.empty() && text.back() == '\n';
+  write(stdout, std::string(text) + (ended ? "" : "\n"));
 }
 
 void Session::print_now(std::string_view text) const {
@@ -91,6 +93,7 @@ int Session::fail(const Error& error) {
 
 void Session::end_now(const Error& error) {
   const int status = fail(error);
+  Speaking::end_now();
   std::fflush(nullptr);
   restore_terminal();
   _exit(status);
@@ -113,10 +116,11 @@ void Session::tell(std::string_view stage, double share) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (!terminal && !plain_progress) return;
   const int percent = static_cast<int>(std::clamp(share, 0.0, 1.0) * 100);
-  const std::string text = fmt::format("{} {}%", stage, plain_progress ? percent / 10 * 10 : percent);
+  std::string text = fmt::format("{} {}%", stage, plain_progress ? percent / 10 * 10 : percent);
   if (text == last_told_) return;
-  last_told_ = text;
-  write(stderr, plain_progress ? text + "\n" : "\r\x1B[K" + text);
+  const std::string line = plain_progress ? text + "\n" : "\r\x1B[K" + text;
+  if (!Speaking::say(stderr, line, WriterThread::Worth::status)) return;
+  last_told_ = std::move(text);
   std::fflush(stderr);
   line_open_ = !plain_progress;
 }
@@ -126,9 +130,8 @@ void Session::show_line(std::string_view text) {
   if (quiet || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0) return;
   const std::size_t width = size.ws_col == 0 ? text.size() : size.ws_col - 1U;  // 0: it does not say
   if (text == last_told_ && line_open_) return;
+  if (!Speaking::say(stderr, "\r\x1B[K" + std::string(text.substr(0, width)), WriterThread::Worth::status)) return;
   last_told_ = text;
-  write(stderr, "\r\x1B[K");
-  write(stderr, text.substr(0, width));
   std::fflush(stderr);
   line_open_ = true;
 }

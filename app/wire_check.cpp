@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/wire_check.hpp"
 
-#include "drivers/leading.hpp"
 #include "drivers/registry.hpp"
 
 namespace footlight::app {
@@ -12,15 +11,6 @@ std::vector<drivers::Objection> objections_to(const std::vector<Bus>& buses) {
     for (drivers::Objection& objection : drivers::preflight(bus)) out.push_back(std::move(objection));
   }
   return out;
-}
-
-std::string unfenced_text(const std::vector<Bus>& buses) {
-  const std::vector<std::string> names = drivers::unfenced(buses);
-  if (names.empty()) return {};
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return (names.size() == 1 ? "this bus cannot be fenced: " : "these buses cannot be fenced: ") + list +
-         " (nothing there refuses another controller)";
 }
 
 Status<> check_wires(Session& session, const std::vector<Bus>& buses) {

@@ -14,9 +14,6 @@ namespace footlight::app {
 /// What this machine's settings of the buses' real wires would spoil.
 [[nodiscard]] std::vector<drivers::Objection> objections_to(const std::vector<Bus>& buses);
 
-/// "this bus cannot be fenced: front-dmx (nothing there refuses another controller)"; empty where all can.
-[[nodiscard]] std::string unfenced_text(const std::vector<Bus>& buses);
-
 /// Tells what would spoil a show. Errors (ErrorKind::device): all that would stop it, with the commands that mend it.
 [[nodiscard]] Status<> check_wires(Session& session, const std::vector<Bus>& buses);
 

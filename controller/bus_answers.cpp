@@ -224,6 +224,7 @@ void BusLoop::wait_after_miss(NodeState& node) noexcept {
 
 void BusLoop::on_boot(NodeState& node) noexcept {
   ++counters_.boots;
+  ++node.boots;
   node.misses = 0;
   node.quarantined = false;
   node.right = false;

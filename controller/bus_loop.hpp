@@ -101,12 +101,13 @@ class BusLoop final : private drivers::EventSink {
     bool silent = false;       ///< it has not answered what it was asked last
     bool quarantined = false;  ///< asked only from time to time
     Keeps keeps = Keeps::unknown;
+    std::uint8_t boots = 0;    ///< restarts that were noticed, modulo 256
   };
   [[nodiscard]] std::size_t nodes() const noexcept { return nodes_.size(); }
   /// @param position of the node on this bus, < nodes()
   [[nodiscard]] NodeStanding standing(std::size_t position) const noexcept {
     const NodeState& node = nodes_[position];
-    return {node.address.node, node.right, node.misses > 0, node.quarantined, node.keeps};
+    return {node.address.node, node.right, node.misses > 0, node.quarantined, node.keeps, node.boots};
   }
   /// False: what its nodes show is taken for granted once it was sent.
   [[nodiscard]] bool verifies() const noexcept { return can_.readback; }
@@ -144,6 +145,7 @@ class BusLoop final : private drivers::EventSink {
     bool changes = false;   ///< looks of `next_` differ from those of `current_`
     bool counted = false;   ///< its delivery of `current_` is counted
     bool quarantined = false;
+    std::uint8_t boots = 0;       ///< restarts that were noticed, modulo 256
     std::uint8_t misses = 0;      ///< in a row
     drivers::Sequence shown = 0;  ///< of the latch that it has taken last, as it said; 0: not known
     std::uint8_t offers = 0;      ///< preloads of `offered` sent

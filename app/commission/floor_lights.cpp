@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include "app/simulated_buses.hpp"
 #include "core/plan.hpp"
@@ -84,11 +83,8 @@ void FloorLights::load(controller::CueSchedule schedule) {
   if (simulated_) return;
   publish(now());
   for (std::size_t b = 0; b < loops_.size(); ++b) {
-    auto handle = [port = drivers::reference(ports_[b])] {
-      return std::visit([](const auto* open) { return open->poll_handle(); }, port);
-    };
-    threads_.push_back(
-        std::make_unique<BusThread>(*loops_[b], std::move(handle), shared_, real_time_, schedule_->switches().size()));
+    threads_.push_back(std::make_unique<BusThread>(*loops_[b], drivers::reference(ports_[b]), shared_, real_time_,
+                                                   schedule_->switches().size()));
     threads_.back()->start();
   }
 }

@@ -159,20 +159,29 @@ void Console::tell_health(const DeskView& view) {
   Json buses = Json::array();
   for (const BusView& bus : view.buses) {
     const controller::BusCounters& counted = bus.counters;
-    buses.push_back({{"name", bus.name},
-                     {"nodes", bus.nodes},
-                     {"unconfirmed", bus.unconfirmed},
-                     {"quarantined", bus.quarantined},
-                     {"deliveries", counted.deliveries},
-                     {"unverified", counted.unverified},
-                     {"retries", counted.retries},
-                     {"misses", counted.misses},
-                     {"boots", counted.boots},
-                     {"latches", counted.latches},
-                     {"late_latches", counted.late_latches},
-                     {"worst_lateness_ms", to_seconds(counted.worst_lateness) * 1e3}});
+    Json last = nullptr;
+    if (!bus.last_fault.empty()) last = {{"text", bus.last_fault}, {"unix_ms", bus.last_fault_unix_ms}};
+    buses.push_back(
+        {{"name", bus.name},
+         {"nodes", bus.nodes},
+         {"unconfirmed", bus.unconfirmed},
+         {"quarantined", bus.quarantined},
+         {"silent", bus.silent},
+         {"trouble", bus.trouble},
+         {"last_fault", std::move(last)},
+         {"load", bus.load ? Json(*bus.load) : Json(nullptr)},
+         {"confirmed_after_ms", bus.confirmed_after ? Json(to_seconds(*bus.confirmed_after) * 1e3) : Json(nullptr)},
+         {"deliveries", counted.deliveries},
+         {"unverified", counted.unverified},
+         {"retries", counted.retries},
+         {"misses", counted.misses},
+         {"boots", counted.boots},
+         {"latches", counted.latches},
+         {"late_latches", counted.late_latches},
+         {"worst_lateness_ms", to_seconds(counted.worst_lateness) * 1e3}});
   }
-  std::string text = Json{{"health", {{"buses", std::move(buses)}}}}.dump();
+  std::string text =
+      Json{{"health", {{"buses", std::move(buses)}}}}.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text == health_) return;
   health_ = text;
   server_->health(std::move(text));

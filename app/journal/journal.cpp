@@ -31,8 +31,7 @@ std::string fixed_part(const ShowState& state, const Place& place) {
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path file, JournalRun run, const Rig& rig, const NodeBoard* board)
-    : path_(std::move(file)), run_(std::move(run)), rig_(rig), board_(board), silent_(rig.nodes.size(), false) {
+Journal::Journal(std::filesystem::path file, JournalRun run) : path_(std::move(file)), run_(std::move(run)) {
   run_.began = wall_time();
   run_.machine_start = machine_start();
   thread_ = std::thread([this] { this->run(); });
@@ -59,6 +58,13 @@ void Journal::plan_is(const std::string& digest) {
   put(std::move(entry));
 }
 
+void Journal::health_is(const std::string& change) {
+  JournalEntry entry;
+  entry.kind = "health";
+  entry.text = change;
+  put(std::move(entry));
+}
+
 void Journal::look(const DeskView& view, RunDesk& desk) {
   const ShowState& state = view.show;
   position_ = state.position;
@@ -72,22 +78,7 @@ void Journal::look(const DeskView& view, RunDesk& desk) {
     last_told_ = std::move(fixed);
     put(place);
   }
-  follow_health();
   tell_trouble(desk);
-}
-
-void Journal::follow_health() {
-  for (std::size_t n = 0; board_ != nullptr && n < silent_.size(); ++n) {
-    const bool silent = (board_->at(n).flags & NodeBoard::kQuarantined) != 0;
-    if (silent == silent_[n]) continue;
-    silent_[n] = silent;
-    const Node& node = rig_.nodes[n];
-    JournalEntry entry;
-    entry.kind = "health";
-    entry.text = fmt::format("node \"{}\" of bus \"{}\" {}", node.name, rig_.buses[node.bus.at()].name,
-                             silent ? "is silent" : "answers again");
-    put(std::move(entry));
-  }
 }
 
 void Journal::tell_trouble(RunDesk& desk) {

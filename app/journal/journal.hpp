@@ -11,9 +11,7 @@
 #include <vector>
 
 #include "app/journal/journal_file.hpp"
-#include "app/live/node_board.hpp"
 #include "app/surfaces/surface.hpp"
-#include "core/rig.hpp"
 
 namespace footlight::app {
 
@@ -25,9 +23,8 @@ class Journal final : public Surface {
   static constexpr std::size_t kMostWaiting = 4096;  ///< entries and places
   static constexpr Duration kPlaceEvery = milliseconds(1000);
 
-  /// @param run `began` and `machine_start` are filled in here  @param board whose nodes' health is followed; null:
-  /// none Borrows rig and board.
-  Journal(std::filesystem::path file, JournalRun run, const Rig& rig, const NodeBoard* board);
+  /// @param run `began` and `machine_start` are filled in here
+  Journal(std::filesystem::path file, JournalRun run);
   ~Journal() override { close("killed"); }
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -38,6 +35,8 @@ class Journal final : public Surface {
 
   /// Another plan is led from now on. @param digest config::digest_of
   void plan_is(const std::string& digest);
+  /// A change of health of a bus or its nodes, in words.
+  void health_is(const std::string& change);
   /// Writes what is left. Nothing may be told any more. Harmless again and again.
   void close(const std::string& how);
 
@@ -49,7 +48,6 @@ class Journal final : public Surface {
   };
   void put(JournalEntry entry);
   void put(const Place& place);
-  void follow_health();
   void tell_trouble(RunDesk& desk);
   void run();
   Status<> save(const Batch& batch);
@@ -57,10 +55,7 @@ class Journal final : public Surface {
 
   const std::filesystem::path path_;
   JournalRun run_;
-  const Rig& rig_;
-  const NodeBoard* board_;
   // Of the calling thread.
-  std::vector<bool> silent_;  ///< by node
   Instant position_{};
   Duration machine_ahead_ = Duration::max();  ///< of the run's clock
   std::optional<Instant> last_at_;            ///< when the show was at the place that was written last

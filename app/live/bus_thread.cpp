@@ -2,14 +2,16 @@
 #include "app/live/bus_thread.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <variant>
 
 namespace footlight::app {
 namespace {
 
 constexpr Duration kLook = milliseconds(200);          // at a port that has no handle, or has been unplugged
 constexpr Duration kTroubled = milliseconds(20);       // a wire that says again and again that it is gone
-constexpr Duration kCount = milliseconds(100);         // counters are told so often
+constexpr Duration kCount = milliseconds(100);         // counters are told so often, and the port is asked how it is
 constexpr Duration kHandedOverLate = microseconds(1);  // what is due a moment from now is as good as due
 
 std::uint32_t flag_of(controller::BusLoop::Keeps keeps, bool can_tell) {
@@ -34,14 +36,9 @@ std::uint32_t flag_of(controller::BusLoop::Keeps keeps, bool can_tell) {
 
 }  // namespace
 
-BusThread::BusThread(controller::BusLoop& loop, std::function<int()> poll_handle, const SharedTarget& target,
+BusThread::BusThread(controller::BusLoop& loop, drivers::PortReference port, const SharedTarget& target,
                      const Clock& clock, std::size_t switches)
-    : loop_(loop),
-      poll_handle_(std::move(poll_handle)),
-      target_(target),
-      clock_(clock),
-      waiting_(clock),
-      times_(switches) {}
+    : loop_(loop), port_(port), target_(target), clock_(clock), waiting_(clock), times_(switches) {}
 
 BusThread::~BusThread() { stop(); }
 
@@ -64,7 +61,8 @@ void BusThread::run() noexcept {
     const Instant wish = step(now);
     if (wish <= now + kHandedOverLate) continue;
     const Instant until = std::min(wish, now + (troubled ? kTroubled : kLook));
-    const Waiting::Why why = waiting_.until(until, troubled ? -1 : poll_handle_());
+    const int handle = std::visit([](const auto* port) { return port->poll_handle(); }, port_);
+    const Waiting::Why why = waiting_.until(until, troubled ? -1 : handle);
     if (why == Waiting::Why::time && until == wish) wake_lateness_.add(clock_.now() - until);
     troubled = why == Waiting::Why::trouble;
   }
@@ -114,29 +112,43 @@ void BusThread::note(Instant now) noexcept {
     latches_ = loop_.counters().latches;
     lit_ = lit;
   }
-  const std::size_t unconfirmed = loop_.unconfirmed();
-  if (unconfirmed == 0 && times_[lit_].confirmed == kNever) times_[lit_].confirmed = now;
+  tell_word(now);
+  // What was confirmed over a wire that is down now is not known any more.
+  const bool down = told_word_.trouble[0] != '\0';
+  const std::size_t unconfirmed = down ? loop_.nodes() : loop_.unconfirmed();
+  if (unconfirmed == 0 && times_[lit_].confirmed == kNever) {
+    times_[lit_].confirmed = now;
+    if (times_[lit_].latched != kNever) told_word_.confirmed_after = now - times_[lit_].latched;
+  }
   unconfirmed_.store(unconfirmed, std::memory_order_relaxed);
-  settled_.store(loop_.settled(), std::memory_order_relaxed);
-  tell_board(now);
+  settled_.store(loop_.settled() && !down, std::memory_order_relaxed);
+  tell_board();
 }
 
-void BusThread::tell_board(Instant now) noexcept {
-  if (counted_at_ == Instant::min() || now - counted_at_ >= kCount) {
-    counted_at_ = now;
-    counters_.write(loop_.counters());
-  }
+void BusThread::tell_word(Instant now) noexcept {
+  if (word_at_ != Instant::min() && now - word_at_ < kCount) return;
+  word_at_ = now;
+  const std::string trouble = drivers::trouble_of(port_);
+  told_word_.trouble.fill('\0');
+  trouble.copy(told_word_.trouble.data(), told_word_.trouble.size() - 1);
+  told_word_.counters = loop_.counters();
+  word_.write(told_word_);
+}
+
+void BusThread::tell_board() noexcept {
   if (board_ == nullptr) return;
+  const bool down = told_word_.trouble[0] != '\0';
   std::size_t quarantined = 0;
   for (std::size_t i = 0; i < loop_.nodes(); ++i) {
     const auto node = loop_.standing(i);
     quarantined += node.quarantined ? 1 : 0;
     NodeBoard::View view = board_->at(node.node.at());
     if (node.right) view.shown = static_cast<std::uint32_t>(loop_.lit());
-    view.flags = (node.right ? NodeBoard::kRight : 0U) | (node.silent ? NodeBoard::kSilent : 0U) |
+    view.flags = (node.right && !down ? NodeBoard::kRight : 0U) | (node.silent || down ? NodeBoard::kSilent : 0U) |
                  (node.quarantined ? NodeBoard::kQuarantined : 0U) | (loop_.verifies() ? 0U : NodeBoard::kUnverified) |
                  flag_of(node.keeps, loop_.keeps_checks());
     board_->put(node.node.at(), view);
+    board_->put_boots(node.node.at(), node.boots);
   }
   quarantined_.store(quarantined, std::memory_order_relaxed);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "controller/bus_loop.hpp"
 #include "controller/lateness.hpp"
 #include "core/clock.hpp"
+#include "drivers/registry.hpp"
 
 namespace footlight::app {
 
@@ -34,9 +36,8 @@ class BusThread {
  public:
   static constexpr Duration kDeaf = milliseconds(500);
 
-  /// Borrows everything. @param poll_handle of the bus's port, asked after each step
-  /// @param switches of the schedule
-  BusThread(controller::BusLoop& loop, std::function<int()> poll_handle, const SharedTarget& target, const Clock& clock,
+  /// Borrows everything. @param port of the bus  @param switches of the schedule
+  BusThread(controller::BusLoop& loop, drivers::PortReference port, const SharedTarget& target, const Clock& clock,
             std::size_t switches);
   ~BusThread();
   BusThread(const BusThread&) = delete;
@@ -67,7 +68,13 @@ class BusThread {
   [[nodiscard]] std::size_t unconfirmed() const noexcept { return unconfirmed_.load(std::memory_order_relaxed); }
 
   /// Not older than a tenth of a second, as long as the thread has something to do.
-  [[nodiscard]] controller::BusCounters counters() const noexcept { return counters_.read(); }
+  struct Word {
+    static constexpr std::size_t kLongestTrouble = 200;
+    controller::BusCounters counters{};
+    Duration confirmed_after{};  ///< of the last switch that all nodes have confirmed: so long after its latch
+    std::array<char, kLongestTrouble> trouble{};  ///< why the wire is down, in whole words, ended by a zero; else empty
+  };
+  [[nodiscard]] Word word() const noexcept { return word_.read(); }
   [[nodiscard]] std::size_t quarantined() const noexcept { return quarantined_.load(std::memory_order_relaxed); }
 
   // After `stop`.
@@ -83,11 +90,12 @@ class BusThread {
   /// @return when it wants to be called again
   Instant step(Instant now) noexcept;
   void note(Instant now) noexcept;
-  void tell_board(Instant now) noexcept;
+  void tell_board() noexcept;
+  void tell_word(Instant now) noexcept;
   Instant go_over(Instant now, const SharedTarget::Told& told) noexcept;
 
   controller::BusLoop& loop_;
-  std::function<int()> poll_handle_;
+  drivers::PortReference port_;
   const SharedTarget& target_;
   const Clock& clock_;
   Waiting waiting_;
@@ -99,8 +107,9 @@ class BusThread {
   std::atomic<bool> settled_{false};
   std::atomic<std::size_t> unconfirmed_{0};
   std::atomic<std::size_t> quarantined_{0};
-  SeqLock<controller::BusCounters> counters_;
-  Instant counted_at_ = Instant::min();
+  SeqLock<Word> word_;
+  Word told_word_{};
+  Instant word_at_ = Instant::min();
   NodeBoard* board_ = nullptr;
   controller::Lateness wake_lateness_;
   std::vector<SwitchTimes> times_;

@@ -2,11 +2,11 @@
 #include "app/live/live_run.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -36,6 +36,7 @@ using controller::Lateness;
 
 constexpr Duration kDeadLead = milliseconds(4000);  // longer than any lease
 constexpr Duration kLookOn = milliseconds(20);
+constexpr Duration kLoadEvery = milliseconds(1000);
 constexpr Duration kPostRoll = milliseconds(2500);  // time for the last lamps to be right
 
 LatenessReport report_of(const Lateness& lateness) {
@@ -48,26 +49,26 @@ LatenessReport report_of(const Lateness& lateness) {
 class LiveRun {
  public:
   LiveRun(const Show& show, const Plan& plan, const Rig& rig, ShowOnWires& wires,
-          const std::vector<drivers::Port>& ports, const LiveOptions& options, const drivers::Leadership& leadership)
+          const std::vector<drivers::Port>& ports, const LiveOptions& options, const drivers::Leadership& leadership,
+          const LoggedPorts* logged)
       : show_(show),
         plan_(plan),
         rig_(rig),
         wires_(wires),
         options_(options),
         leadership_(leadership),
+        logged_(logged),
         plans_(wires, show.tempo, controller::Stands(plan), options.rehearsal),
         cue_(plans_.rehearsal(), show.time, target_, clock_) {
     resets_.emplace(show, rig, *wires.schedule, options.plan_way);
     mutings_.emplace(show, plan, rig, *wires.schedule);
     for (std::size_t b = 0; b < rig.buses.size(); ++b) {
       ports_.push_back(drivers::reference(ports[b]));
-      auto handle = [port = ports_.back()] {
-        return std::visit([](const auto* open) { return open->poll_handle(); }, port);
-      };
-      threads_.push_back(std::make_unique<BusThread>(*wires.loops[b], std::move(handle), target_, clock_,
+      threads_.push_back(std::make_unique<BusThread>(*wires.loops[b], ports_.back(), target_, clock_,
                                                      wires.schedule->switches().size()));
       const auto nodes = static_cast<std::size_t>(std::ranges::count(rig.nodes, BusIndex::of(b), &Node::bus));
       buses_.push_back({rig.buses[b].name, nodes, nodes});
+      carried_.emplace_back();
       if (options.nodes != nullptr) threads_.back()->tell(*options.nodes);
     }
   }
@@ -86,10 +87,13 @@ class LiveRun {
   [[nodiscard]] bool settled() const {
     return std::ranges::all_of(threads_, [](const auto& bus) { return bus->settled(); });
   }
+  void start_heart();
+  void stop_heart();
   void wait() const;
   void look_on();
   void look_for_others();
   void listen_to_the_desk();
+  void look_at_buses();
   void tell(const controller::Command& command);
   [[nodiscard]] bool over() const;
   void call_the_roll();
@@ -114,6 +118,7 @@ class LiveRun {
   std::vector<drivers::PortReference> ports_;
   const LiveOptions& options_;
   const drivers::Leadership& leadership_;
+  const LoggedPorts* logged_;  ///< null: nobody reckons what the wires carry
   SteadyClock clock_;
   SharedTarget target_;
   PlaysInTurn plans_;
@@ -124,10 +129,14 @@ class LiveRun {
   LiveReport over_;                         ///< figures of the switches of plans before
   std::vector<std::unique_ptr<BusThread>> threads_;
   Lateness wake_;
-  bool roll_called_ = false;
+  std::atomic<bool> roll_called_{false};
+  std::atomic<bool> beats_{false};
+  std::thread heart_;
   std::size_t told_ = 0;
   ShowState state_;
   std::vector<BusView> buses_;
+  std::vector<Duration> carried_;  ///< by each wire, when its load was reckoned last
+  Instant load_at_{};
   std::shared_ptr<const Plan> way_;
   bool ended_ = false;        ///< by the desk
   bool stands_back_ = false;  ///< markers follow another controller
@@ -150,6 +159,7 @@ Result<LiveReport> LiveRun::play() {
     for (const auto& bus : threads_) bus->wake();
   });
   for (const auto& bus : threads_) bus->start();
+  start_heart();
   Instant ends_at = kNever;
   while (!stopped() && !ended_ && !stands_back_ && clock_.now() < ends_at) {
     wait();
@@ -161,6 +171,7 @@ Result<LiveReport> LiveRun::play() {
     if (ends_at == kNever) ends_at = clock_.now() + kPostRoll;
     if (unconfirmed() == 0 && settled()) break;
   }
+  stop_heart();
   const Duration run = clock_.now() - began;
   cue_.stop();
   for (const auto& bus : threads_) bus->stop();
@@ -172,6 +183,22 @@ Result<LiveReport> LiveRun::play() {
   if (stopped())
     return Error{ErrorKind::interrupted, "interrupted: the lamps keep what they show until their lease ends"};
   return report(bare, run);
+}
+
+void LiveRun::start_heart() {
+  if (!options_.heartbeat) return;
+  beats_.store(true);
+  heart_ = std::thread([this] {
+    while (beats_.load()) {
+      options_.heartbeat(cue_.state(), roll_called_.load());
+      std::this_thread::sleep_for(kLookOn);
+    }
+  });
+}
+
+void LiveRun::stop_heart() {
+  beats_.store(false);
+  if (heart_.joinable()) heart_.join();
 }
 
 void LiveRun::wait() const {
@@ -236,12 +263,9 @@ void LiveRun::change_plan() {
 
 void LiveRun::listen_to_the_desk() {
   if (!options_.desk) return;
-  for (std::size_t b = 0; b < buses_.size(); ++b) {
-    buses_[b].unconfirmed = threads_[b]->unconfirmed();
-    buses_[b].quarantined = threads_[b]->quarantined();
-    buses_[b].counters = threads_[b]->counters();
-  }
-  const DeskWishes wishes = options_.desk({state_, roll_called_, buses_, &*plans_.show().schedule, way_, clock_.now()});
+  look_at_buses();
+  const DeskWishes wishes =
+      options_.desk({state_, roll_called_.load(), buses_, &*plans_.show().schedule, way_, clock_.now()});
   cue_.set_bars(wishes.bars);
   for (const controller::Command& command : wishes.commands) tell(command);
   if (wishes.muted) {
@@ -251,6 +275,23 @@ void LiveRun::listen_to_the_desk() {
   if (const auto command = mutings_->look()) tell(*command);
   ended_ = wishes.ends;
   nobody_ = wishes.nobody;
+}
+
+void LiveRun::look_at_buses() {
+  const Instant now = clock_.now();
+  const bool reckon = logged_ != nullptr && now - load_at_ >= kLoadEvery;
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    const BusThread::Word word = threads_[b]->word();
+    buses_[b].unconfirmed = threads_[b]->unconfirmed();
+    buses_[b].quarantined = threads_[b]->quarantined();
+    buses_[b].counters = word.counters;
+    buses_[b].trouble = word.trouble.data();
+    if (word.confirmed_after > Duration{}) buses_[b].confirmed_after = word.confirmed_after;
+    if (!reckon) continue;
+    const Duration carried = logged_->carried(b);
+    buses_[b].load = to_seconds(carried - std::exchange(carried_[b], carried)) / to_seconds(now - load_at_);
+  }
+  if (reckon) load_at_ = now;
 }
 
 void LiveRun::tell(const controller::Command& command) {
@@ -415,7 +456,7 @@ Result<LiveReport> live_run(const Show& show, const Plan& plan, const Rig& rig, 
   const auto limits = limit_tempo(show, plan, rig, **wires, **wires);
   if (options.limits) options.limits(limits);
   if (options.changes != nullptr) options.changes->begin(**wires);
-  auto report = LiveRun(show, plan, rig, **wires, ports, options, leadership).play();
+  auto report = LiveRun(show, plan, rig, **wires, ports, options, leadership, logged ? &*logged : nullptr).play();
   if (options.changes != nullptr) options.changes->end();
   return report;
 }

@@ -75,9 +75,16 @@ struct LiveReport {
 struct BusView {
   std::string_view name;
   std::size_t nodes = 0;
-  std::size_t unconfirmed = 0;
+  std::size_t unconfirmed = 0;  ///< all of them while the wire is down
   std::size_t quarantined = 0;  ///< known where LiveOptions has a board
   controller::BusCounters counters{};
+  std::string trouble{};                      ///< why the wire is down, for people; empty: it is not
+  std::optional<double> load{};               ///< share of the last second that its wire was taken; none: not known
+  std::optional<Duration> confirmed_after{};  ///< the last switch that all nodes confirmed: so long after its latch
+  // Filled in by the desk (app/readiness/bus_health.hpp).
+  std::size_t silent = 0;    ///< nodes that do not answer
+  std::string last_fault{};  ///< what was the matter last; empty: nothing was
+  std::int64_t last_fault_unix_ms = 0;
 };
 
 /// A gate of the show, as its input tells it.
@@ -182,6 +189,9 @@ struct LiveOptions {
   std::function<void(const Clock&)> clock{};
   /// Whoever brings other plans; null: nobody. Borrowed
   PlanChanges* changes = nullptr;
+  /// Told what the cue thread has published last, some fifty times a second, by a thread that waits for nobody: not for
+  /// the desk either. For whoever has to know that the show lives.
+  std::function<void(const ShowState& state, bool roll_called)> heartbeat;
   /// Waits for the desk, at most so long; none: the calling thread sleeps.
   std::function<void(Duration)> wait;
   const std::atomic<bool>* stop = nullptr;

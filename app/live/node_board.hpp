@@ -31,7 +31,7 @@ class NodeBoard {
     friend bool operator==(const View&, const View&) = default;
   };
 
-  explicit NodeBoard(std::size_t nodes) : words_(nodes) {}
+  explicit NodeBoard(std::size_t nodes) : words_(nodes), boots_(nodes) {}
 
   [[nodiscard]] std::size_t size() const { return words_.size(); }
   [[nodiscard]] View at(std::size_t node) const noexcept {
@@ -44,8 +44,17 @@ class NodeBoard {
     if (words_[node].load(std::memory_order_relaxed) != word) words_[node].store(word, std::memory_order_relaxed);
   }
 
+  /// Restarts that were noticed, modulo 256.
+  [[nodiscard]] std::uint8_t boots(std::size_t node) const noexcept {
+    return boots_[node].load(std::memory_order_relaxed);
+  }
+  void put_boots(std::size_t node, std::uint8_t boots) noexcept {
+    boots_[node].store(boots, std::memory_order_relaxed);
+  }
+
  private:
   std::vector<std::atomic<std::uint64_t>> words_;
+  std::vector<std::atomic<std::uint8_t>> boots_;
 };
 
 }  // namespace footlight::app

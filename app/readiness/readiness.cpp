@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "drivers/leading.hpp"
+
 namespace footlight::app {
 namespace {
 
@@ -200,6 +202,15 @@ std::string names_text(const std::vector<std::string>& nodes) {
 
 std::string silence_text(std::size_t silent_markers, std::size_t markers, const std::vector<std::string>& silent) {
   return fmt::format("{} of {} markers silent: {}", grouped(silent_markers), grouped(markers), names_text(silent));
+}
+
+std::string unfenced_text(const std::vector<Bus>& buses) {
+  const std::vector<std::string> names = drivers::unfenced(buses);
+  if (names.empty()) return {};
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return (names.size() == 1 ? "this bus cannot be fenced: " : "these buses cannot be fenced: ") + list +
+         " (nothing there refuses another controller)";
 }
 
 }  // namespace footlight::app

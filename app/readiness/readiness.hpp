@@ -9,6 +9,7 @@
 
 #include "app/live/live_run.hpp"
 #include "core/result.hpp"
+#include "core/rig.hpp"
 
 namespace footlight::app {
 
@@ -93,5 +94,8 @@ class Readiness {
 /// "12 of 3,290 markers silent: left-3, left-4 and 2 more nodes". @param silent names of nodes
 [[nodiscard]] std::string silence_text(std::size_t silent_markers, std::size_t markers,
                                        const std::vector<std::string>& silent);
+
+/// "this bus cannot be fenced: front-dmx (nothing there refuses another controller)"; empty where all can.
+[[nodiscard]] std::string unfenced_text(const std::vector<Bus>& buses);
 
 }  // namespace footlight::app

@@ -55,9 +55,9 @@ struct NodesBy {
 
 }  // namespace
 
-ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board, RunDesk& desk,
-                                   bool arms)
-    : readiness_(readiness), rig_(rig), board_(board), arms_(arms) {
+ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board,
+                                   const BusHealth& health, RunDesk& desk, bool arms)
+    : readiness_(readiness), rig_(rig), board_(board), health_(health), unfenced_(unfenced_text(rig.buses)), arms_(arms) {
   for (const Node& node : rig.nodes) markers_ += node.channels.size();
   desk.bar(controller::kNotReady, readiness.refuses_go());
   desk.add([&readiness](DeskView& view) {
@@ -90,6 +90,7 @@ void ReadinessSurface::add_orders(RunDesk& desk) {
 }
 
 void ReadinessSurface::look(const DeskView& view, RunDesk& desk) {
+  judge_buses();
   judge_nodes(view);
   judge_time(view);
   follow_swap(desk);
@@ -100,6 +101,21 @@ void ReadinessSurface::look(const DeskView& view, RunDesk& desk) {
   desk.bar(controller::kNotReady, readiness_.refuses_go());
 }
 
+void ReadinessSurface::judge_buses() {
+  std::string down;
+  for (std::size_t b = 0; b < health_.buses(); ++b) {
+    if (health_.down(b).empty()) continue;
+    down += fmt::format("{}{} is down: {}", down.empty() ? "" : "; ", rig_.buses[b].name, health_.down(b));
+  }
+  if (!down.empty()) {
+    readiness_.tell(Stage::buses, State::error, std::move(down));
+  } else if (!unfenced_.empty()) {
+    readiness_.tell(Stage::buses, State::warning, fmt::format("{} open; {}", health_.buses(), unfenced_));
+  } else {
+    readiness_.tell(Stage::buses, State::success, fmt::format("{} open", health_.buses()));
+  }
+}
+
 void ReadinessSurface::judge_nodes(const DeskView& view) {
   if (!view.roll_called) {
     readiness_.tell(Stage::roll_call, State::waiting, "nodes are asked");
@@ -108,30 +124,33 @@ void ReadinessSurface::judge_nodes(const DeskView& view) {
   std::vector<std::string> silent;
   std::size_t silent_markers = 0;
   std::size_t unverified = 0;
+  std::size_t unproved = 0;
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
-    const NodeBoard::View node = board_.at(n);
-    if ((node.flags & NodeBoard::kUnverified) != 0) {
-      ++unverified;
-    } else if ((node.flags & (NodeBoard::kSilent | NodeBoard::kQuarantined)) != 0 ||
-               node.shown == NodeBoard::kNothingYet) {
+    if (health_.silent(n)) {
       silent.push_back(rig_.nodes[n].name);
       silent_markers += rig_.nodes[n].channels.size();
+    }
+    if (health_.unproved(n)) {
+      ++unproved;
+    } else if ((board_.at(n).flags & NodeBoard::kUnverified) != 0) {
+      ++unverified;
     }
   }
   const std::string answered = fmt::format("{} nodes answer", rig_.nodes.size() - silent.size());
   readiness_.tell(Stage::roll_call, silent.empty() ? State::success : State::error,
                   silent.empty() ? answered : silence_text(silent_markers, markers_, silent));
-  judge_checks(silent.size(), unverified);
+  judge_checks(unproved, unverified);
   readiness_.tell(Stage::looks, silent.empty() ? State::success : State::warning,
                   silent.empty() ? "uploaded" : "uploaded, not to who is silent");
 }
 
-/// Whether nodes keep this plan and this patch, as far as they can tell.
-void ReadinessSurface::judge_checks(std::size_t silent, std::size_t unverified) {
+/// Whether nodes show this plan, and keep it and this patch, as far as they can tell.
+void ReadinessSurface::judge_checks(std::size_t unproved, std::size_t unverified) {
   NodesBy with;
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) with.count(board_.at(n).flags, rig_.nodes[n].name);
   std::string text = fmt::format("{} nodes confirm by sequence and check sum what this plan shows",
-                                 rig_.nodes.size() - silent - unverified);
+                                 rig_.nodes.size() - unproved - unverified);
+  if (unproved > 0) text += fmt::format(", {} do not", unproved);
   if (unverified > 0) text += fmt::format(", {} cannot be read back", unverified);
   const bool untold = with.none > 0;
   if (with.same > 0) text += fmt::format("; {} keep this plan and patch", with.same);
@@ -143,7 +162,7 @@ void ReadinessSurface::judge_checks(std::size_t silent, std::size_t unverified) 
   } else if (with.unknown > 0 && !readiness_.armed()) {
     readiness_.tell(Stage::plan_on_nodes, State::waiting, std::move(text));
   } else {
-    readiness_.tell(Stage::plan_on_nodes, unverified > 0 || untold ? State::warning : State::success, std::move(text));
+    readiness_.tell(Stage::plan_on_nodes, unproved + unverified > 0 || untold ? State::warning : State::success, std::move(text));
   }
 }
 

@@ -12,7 +12,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include "core/file_descriptor.hpp"
 
 namespace footlight::app {
 namespace {
@@ -57,10 +58,16 @@ void RehearsalLog::open() {
     std::filesystem::rename(path, folder_ / (stem_of(entries_.front().since_1970_s) + ".jsonl"), error);
     entries_.clear();
   }
-  file_ = FileDescriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
-  if (file_.get() < 0) trouble_ = fmt::format("cannot write '{}': {}", path.string(), std::strerror(errno));
-  // A line that was cut off is ended, or the next one would be part of it.
-  if (!entries_.empty()) (void)!::write(file_.get(), "\n", 1);
+  const auto file =
+      std::make_shared<FileDescriptor>(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (file->get() < 0) {
+    not_opened_ = fmt::format("cannot write '{}': {}", path.string(), std::strerror(errno));
+  } else {
+    file_ = std::make_unique<WriterThread>(
+        [file](std::string_view text) { return WriterThread::write_all(file->get(), text); });
+    // A line that was cut off is ended, or the next one would be part of it.
+    if (!entries_.empty()) file_->put("\n");
+  }
   RehearsalEntry begun;
   begun.kind = Kind::begun;
   begun.text = show_.title;
@@ -75,6 +82,7 @@ std::string RehearsalLog::close() {
     ended.count = show_.tempo.count_at(seen_->position);
   }
   write_down(std::move(ended));
+  (void)flush();
   const std::string stem = stem_of(entries_.front().since_1970_s);
   std::error_code error;
   std::filesystem::rename(folder_ / kFile, folder_ / (stem + ".jsonl"), error);
@@ -83,21 +91,24 @@ std::string RehearsalLog::close() {
 
 void RehearsalLog::write_down(RehearsalEntry entry) {
   entry.since_1970_s = wall_s_();
-  const std::string line = json_of(entry) + "\n";
+  if (file_) file_->put(json_of(entry) + "\n");
   entries_.push_back(std::move(entry));
-  if (file_.get() < 0) return;
-  // One write: what the kernel has taken outlives the program.
-  const ssize_t written = ::write(file_.get(), line.data(), line.size());
-  if (written == static_cast<ssize_t>(line.size())) return;
-  trouble_ = fmt::format("the rehearsal is not kept in '{}': {}", (folder_ / kFile).string(),
-                         written < 0 ? std::strerror(errno) : "the disk is full");
+}
+
+std::string RehearsalLog::trouble() const {
+  if (!file_) return not_opened_;
+  const std::string why = file_->trouble();
+  return why.empty() ? why : fmt::format("the rehearsal is not kept in '{}': {}", (folder_ / kFile).string(), why);
 }
 
 void RehearsalLog::look(const DeskView& view, RunDesk& desk) {
   if (seen_) follow(*seen_, view.show);
   seen_ = view.show;
-  if (trouble_.empty() || std::exchange(trouble_told_, true)) return;
-  desk.tell({RunEvent::Kind::note, trouble_ + " (notes and the report stay in memory until the end)"});
+  if (trouble_told_) return;
+  const std::string why = trouble();
+  if (why.empty()) return;
+  trouble_told_ = true;
+  desk.tell({RunEvent::Kind::note, why + " (notes and the report stay in memory until the end)"});
 }
 
 void RehearsalLog::follow(const ShowState& before, const ShowState& now) {

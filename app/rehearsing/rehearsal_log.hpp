@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,14 +11,14 @@
 #include "app/rehearsing/rehearsal_entry.hpp"
 #include "app/surfaces/run_desk.hpp"
 #include "app/surfaces/surface.hpp"
+#include "app/writer_thread.hpp"
 #include "controller/cue_list.hpp"
-#include "core/file_descriptor.hpp"
 #include "core/show.hpp"
 
 namespace footlight::app {
 
-/// Writes down what happens in a rehearsal, line by line as it happens, so that a program that is killed loses nothing
-/// that it has said: the next run of the same show goes on in the same file. One thread.
+/// Writes down what happens in a rehearsal, line by line as it happens, by a thread of its own: a program that is
+/// killed loses nothing that the disk has taken, and the next run of the same show goes on in the same file.
 class RehearsalLog final : public Surface {
  public:
   static constexpr const char* kFile = "rehearsal.jsonl";
@@ -34,7 +36,9 @@ class RehearsalLog final : public Surface {
   void write_down(RehearsalEntry entry);
   [[nodiscard]] const std::vector<RehearsalEntry>& entries() const { return entries_; }
   /// Why nothing is kept; empty: it is.
-  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] std::string trouble() const;
+  /// Until all is in the file, as WriterThread::flush.
+  bool flush() { return !file_ || file_->flush(); }
 
   void look(const DeskView& view, RunDesk& desk) override;
   void told(const RunEvent& event) override;
@@ -54,8 +58,8 @@ class RehearsalLog final : public Surface {
   const std::vector<controller::CuePlay>& plays_;
   std::filesystem::path folder_;
   std::function<double()> wall_s_;
-  FileDescriptor file_;
-  std::string trouble_;
+  std::unique_ptr<WriterThread> file_;  ///< null: there is none
+  std::string not_opened_;
   bool trouble_told_ = false;
   std::vector<RehearsalEntry> entries_;
   std::optional<ShowState> seen_;

@@ -2,10 +2,13 @@
 #include "app/surfaces/prompt_desk.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "app/speaking.hpp"
 
 namespace footlight::app {
 namespace {
@@ -17,7 +20,8 @@ constexpr Duration kStateLines = milliseconds(500);  // while nothing but the po
 constexpr Duration kRefusedFor = milliseconds(2500);
 constexpr int kTempoStep_percent = 5;
 constexpr char kEscape = 27;
-constexpr char kUp = 17;  // what no key sends
+// Those that keys send in this place (Ctrl-Q, Ctrl-R) are nobody's.
+constexpr char kUp = 17;
 constexpr char kDown = 18;
 
 constexpr std::string_view kKeys =
@@ -44,6 +48,7 @@ PromptDesk::PromptDesk(Session& session, const Show& show, const Plan& plan, Run
 void PromptDesk::look(const DeskView& view, RunDesk& /*desk*/) {
   seen_ = view;
   if (!input_.closed()) read();
+  tell_lost();
   show_state(view);
 }
 
@@ -51,6 +56,7 @@ void PromptDesk::look(const DeskView& view, RunDesk& /*desk*/) {
 std::string PromptDesk::without_arrows(const std::string& keys) {
   std::string out;
   for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i] == kUp || keys[i] == kDown) continue;
     if (keys[i] != kEscape || i + 1 >= keys.size() || keys[i + 1] != '[') {
       out += keys[i];
       continue;
@@ -209,7 +215,15 @@ void PromptDesk::show_state(const DeskView& view) {
   if (now == told_ && (!runs || (told_at_ != Instant::min() && state.at - told_at_ < kStateLines))) return;
   told_ = now;
   told_at_ = state.at;
-  session_.print_now(text_.json(view));
+  // The next one makes it worthless: a reader that is slow gets fewer of them.
+  if (!Speaking::say(stdout, text_.json(view) + "\n", WriterThread::Worth::status)) return told_.clear();
+  std::fflush(stdout);
+}
+
+void PromptDesk::tell_lost() {
+  const std::uint64_t lost = Speaking::lost();
+  if (lost == 0) return;
+  told({RunEvent::Kind::note, fmt::format("whoever reads this was too slow: {} lines are left out", lost)});
 }
 
 }  // namespace footlight::app

@@ -38,6 +38,7 @@ class PromptDesk final : public Surface {
   void refuse(const std::string& why);
   void print(const std::string& line);
   void show_state(const DeskView& view);
+  void tell_lost();
 
   Session& session_;
   RunDesk& desk_;

@@ -39,6 +39,7 @@ RawTerminal::RawTerminal() {
     (void)::sigaction(signal, &action, nullptr);
   }
   termios keys = before;
+  keys.c_iflag &= ~static_cast<tcflag_t>(IXON);  // Ctrl-S would stop what the show says
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   keys.c_cc[VMIN] = 1;
   keys.c_cc[VTIME] = 0;

@@ -3,8 +3,8 @@
 
 namespace footlight::app {
 
-/// Keys come one by one and are not echoed, while this lives; Ctrl-Z stops nothing. The terminal is as it was again
-/// whatever ends the program: its end, a signal, an abort; only SIGKILL leaves it (`stty sane`).
+/// Keys come one by one and are not echoed, while this lives; Ctrl-Z and Ctrl-S stop nothing. The terminal is as it was
+/// again whatever ends the program: its end, a signal, an abort; only SIGKILL leaves it (`stty sane`).
 class RawTerminal {
  public:
   /// One at a time. Where stdin is no terminal nothing happens.

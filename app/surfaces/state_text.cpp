@@ -114,7 +114,11 @@ std::string StateText::buses(const std::vector<BusView>& buses) const {
   std::string wrong;
   for (const BusView& bus : buses) {
     nodes += bus.nodes;
-    if (bus.unconfirmed == 0) continue;
+    if (bus.unconfirmed == 0 && bus.trouble.empty()) continue;
+    if (!bus.trouble.empty()) {
+      wrong += fmt::format("{}{} DOWN", wrong.empty() ? "" : ", ", bus.name);
+      continue;
+    }
     wrong += fmt::format("{}{} {}/{} NOT RIGHT", wrong.empty() ? "" : ", ", bus.name, bus.unconfirmed, bus.nodes);
   }
   return wrong.empty() ? fmt::format("all {} nodes right", nodes) : wrong;
@@ -215,7 +219,7 @@ std::string StateText::changes(const DeskView& view) {
   for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
   for (const ReadinessView::Stage& stage : view.readiness.stages) now += fmt::format(" {}", stage.state);
   now += view.readiness.armed ? " armed" : " refused";
-  for (const BusView& bus : view.buses) now += fmt::format(" {}", bus.unconfirmed);
+  for (const BusView& bus : view.buses) now += fmt::format(" {} {} {}", bus.unconfirmed, bus.silent, bus.trouble);
   now += fmt::format(" {} {}", view.freeze.known, view.muted);
   now += fmt::format(" {} {} {}", static_cast<int>(view.edit.state), view.edit.people, view.edit.untold);
   for (const EditView::Absent& one : view.edit.absent) now += " " + one.id + "=" + one.cover;
@@ -239,7 +243,11 @@ std::string StateText::json(const DeskView& view) const {
   if (resets) reset["at_s"] = to_seconds(state.target.show_time);
   Json buses = Json::array();
   for (const BusView& bus : view.buses) {
-    buses.push_back({{"name", bus.name}, {"nodes", bus.nodes}, {"unconfirmed", bus.unconfirmed}});
+    buses.push_back({{"name", bus.name},
+                     {"nodes", bus.nodes},
+                     {"unconfirmed", bus.unconfirmed},
+                     {"silent", bus.silent},
+                     {"trouble", bus.trouble}});
   }
   Json gates = Json::array();
   for (const GateView& gate : view.gates) gates.push_back({{"name", gate.name}, {"state", app::to_text(gate.state)}});

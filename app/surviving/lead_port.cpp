@@ -98,22 +98,49 @@ Result<std::unique_ptr<LeadPort>> LeadPort::open(Settings settings) {
 }
 
 void LeadPort::look(const DeskView& view, RunDesk& desk) {
-  const Duration now = machine_time();
-  const Instant at = view.show.at;
-  machine_ahead_ = std::min(machine_ahead_, now - at.time_since_epoch());
-  if (std::exchange(sent_away_, 0) > 0) {
-    desk.tell({RunEvent::Kind::alarm, "the understudy has the plan before this one: begin it again with these files"});
+  std::vector<RunEvent> news;
+  {
+    const std::lock_guard lock(mutex_);
+    news.swap(news_);
+    emergency_hold_ = view.emergency_hold;
+    readiness_ = view.readiness.outlives;
+    looked_ = true;
   }
-  welcome(now);
+  for (RunEvent& event : news) desk.tell(std::move(event));
+}
+
+void LeadPort::tell(RunEvent::Kind kind, std::string text) {
+  constexpr std::size_t kMostNews = 64;  // a desk that hears nothing for so long has other troubles
+  const std::lock_guard lock(mutex_);
+  if (news_.size() < kMostNews) news_.push_back({kind, std::move(text)});
+}
+
+void LeadPort::beat(const ShowState& state) {
+  const Duration now = machine_time();
+  const Instant at = state.at;
+  machine_ahead_ = std::min(machine_ahead_, now - at.time_since_epoch());
   // Only the cue thread's own words are passed on: when it falls silent, so does this.
-  const bool due = said_at_ == Instant::min() || at - said_at_ >= kLeadEvery;
+  DeskView view;
+  view.show = state;
+  bool looked = false;
+  std::string next_plan;
+  {
+    const std::lock_guard lock(mutex_);
+    next_plan.swap(next_plan_);
+    looked = looked_;
+    view.emergency_hold = emergency_hold_;
+    view.readiness.outlives = readiness_;
+  }
+  if (!next_plan.empty()) go_over(next_plan);
+  welcome(now);
+  const bool due = looked && (said_at_ == Instant::min() || at - said_at_ >= kLeadEvery);
   std::string line;
   if (due) {
     said_at_ = at;
     line = place_line(place_of(view, machine_ahead_), now);
   }
   std::erase_if(clients_, [&](Client& client) {
-    return !listen_to(client, now, desk) || (due && client.follows && !say(client.socket, line));
+    return !listen_to(client, now) || (due && client.follows && !say(client.socket, line));
   });
 }
 
@@ -128,7 +155,7 @@ void LeadPort::welcome(Duration now) {
   }
 }
 
-bool LeadPort::listen_to(Client& client, Duration now, RunDesk& desk) {
+bool LeadPort::listen_to(Client& client, Duration now) {
   if (!client.follows && now - client.since > kFirstLineWithin) return false;
   std::array<char, 512> buffer{};
   const ssize_t size = ::recv(client.socket.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
@@ -137,40 +164,48 @@ bool LeadPort::listen_to(Client& client, Duration now, RunDesk& desk) {
   for (std::size_t end = client.heard.find('\n'); end != std::string::npos; end = client.heard.find('\n')) {
     const std::string line = client.heard.substr(0, end);
     client.heard.erase(0, end + 1);
-    if (!take_line(client, line, desk)) return false;
+    if (!take_line(client, line)) return false;
   }
   return client.heard.size() <= kLongestLeadLine;
 }
 
-bool LeadPort::take_line(Client& client, std::string_view line, RunDesk& desk) {
+bool LeadPort::take_line(Client& client, std::string_view line) {
   if (const auto epoch = take_over_in(line); epoch && client.follows && *epoch > settings_.epoch) {
-    taken_over_ = *epoch;
+    taken_over_.store(*epoch, std::memory_order_relaxed);
     return true;
   }
   const auto request = follow_request(line);
   if (!request || client.follows) return false;
   if (!settings_.token.empty() && !same_secret(settings_.token, request->token)) {
     (void)say(client.socket, refused_line("another token is wanted"));
-    desk.tell({RunEvent::Kind::alarm, "an understudy without the right token was refused"});
+    tell(RunEvent::Kind::alarm, "an understudy without the right token was refused");
     return false;
   }
   if (request->plan != settings_.plan) {
     (void)say(client.socket, refused_line("another plan is led here"));
-    desk.tell({RunEvent::Kind::alarm, "an understudy with another plan was refused"});
+    tell(RunEvent::Kind::alarm, "an understudy with another plan was refused");
     return false;
   }
   client.follows = true;
-  desk.tell({RunEvent::Kind::note, "an understudy follows"});
+  tell(RunEvent::Kind::note, "an understudy follows");
   return say(client.socket, leads_line(settings_.epoch));
 }
 
 void LeadPort::plan_is(const std::string& digest) {
+  const std::lock_guard lock(mutex_);
+  next_plan_ = digest;
+}
+
+void LeadPort::go_over(const std::string& digest) {
   if (digest == settings_.plan) return;
   settings_.plan = digest;
-  sent_away_ += std::erase_if(clients_, [](const Client& client) {
+  const std::size_t sent_away = std::erase_if(clients_, [](const Client& client) {
     if (client.follows) (void)say(client.socket, refused_line("another plan is led from now on: begin it again"));
     return client.follows;
   });
+  if (sent_away > 0) {
+    tell(RunEvent::Kind::alarm, "the understudy has the plan before this one: begin it again with these files");
+  }
 }
 
 void LeadPort::close(const std::string& how) {

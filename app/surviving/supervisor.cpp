@@ -99,6 +99,7 @@ class Supervisor {
  private:
   bool start() {
     ready_ = false;
+    ends_ = false;
     heard_at_.reset();
     std::vector<char*> arguments;
     for (std::string& argument : arguments_) arguments.push_back(argument.data());
@@ -128,7 +129,7 @@ class Supervisor {
     while (true) {
       if (const auto end = reap()) return *end;
       wait(milliseconds(100));
-      if (heard_at_ && clock_.now() - *heard_at_ > silence_) {
+      if (heard_at_ && !ends_ && clock_.now() - *heard_at_ > silence_) {
         note_(fmt::format("the cue thread has been silent for {:.1f} s: the run is killed", to_seconds(silence_)));
         heard_at_.reset();
         (void)::kill(child_, SIGKILL);
@@ -161,6 +162,7 @@ class Supervisor {
     }
     for (std::string said = ear_.hear(); !said.empty(); said = ear_.hear()) {
       ready_ = ready_ || said.find("READY=1") != std::string::npos;
+      ends_ = ends_ || said.find("STOPPING=1") != std::string::npos;
       if (said.find("WATCHDOG=1") != std::string::npos) heard_at_ = clock_.now();
     }
   }
@@ -180,6 +182,7 @@ class Supervisor {
   bool again_ = false;
   bool ready_ = false;
   bool ending_ = false;
+  bool ends_ = false;                ///< the child, of its own will
   std::optional<Instant> heard_at_;  ///< the watchdog's sign of life
 };
 

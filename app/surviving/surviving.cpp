@@ -136,10 +136,10 @@ Result<CutOff> follow_lead(const SurvivingOptions& options, const std::string& p
 }
 
 Surviving::Surviving(const std::filesystem::path& journal, const std::string& show, const std::string& plan,
-                     const Rig& rig, const NodeBoard* board, std::uint32_t epoch)
+                     std::uint32_t epoch)
     : plan_(plan),
       epoch_(epoch),
-      journal_(journal, JournalRun{0, {}, FOOTLIGHT_VERSION, show, plan, {}, epoch, {}, {}}, rig, board) {}
+      journal_(journal, JournalRun{0, {}, FOOTLIGHT_VERSION, show, plan, {}, epoch, {}, {}}) {}
 
 Status<> Surviving::open_door(const SurvivingOptions& options, const Note& note) {
   if (options.lead.empty()) return Done{};
@@ -164,13 +164,18 @@ void Surviving::plan_is(const std::string& digest) {
 void Surviving::close(const std::string& how) {
   // Who is interrupted may be a machine that is switched off: then somebody else has to lead.
   if (door_ && (how == kOver || how == kQuit) && !handed_over()) door_->close(how);
+  watchdog_.end();
   journal_.close(how);
 }
 
 void Surviving::join(RunDesk& desk) {
   desk.add(journal_);
-  desk.add(watchdog_);
   if (door_) desk.add(*door_);
+}
+
+void Surviving::beat(const ShowState& state, bool roll_called) {
+  watchdog_.beat(state, roll_called);
+  if (door_) door_->beat(state);
 }
 
 void Surviving::take_up(const CutOff& cut, AfterDeath policy, RunDesk& desk, LiveOptions& live) {

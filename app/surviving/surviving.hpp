@@ -67,9 +67,9 @@ struct CutOff {
 /// A run's side of surviving: writes the journal, feeds the watchdog, tells understudies, takes a show up.
 class Surviving {
  public:
-  /// @param show path of its file  @param plan config::digest_of  Borrows rig and board.
-  Surviving(const std::filesystem::path& journal, const std::string& show, const std::string& plan, const Rig& rig,
-            const NodeBoard* board, std::uint32_t epoch);
+  /// @param show path of its file  @param plan config::digest_of
+  Surviving(const std::filesystem::path& journal, const std::string& show, const std::string& plan,
+            std::uint32_t epoch);
 
   /// The door for understudies, where one is wanted. Errors: as LeadPort::open.
   Status<> open_door(const SurvivingOptions& options, const Note& note);
@@ -79,6 +79,8 @@ class Surviving {
   void close(const std::string& how);
 
   void join(RunDesk& desk);
+  /// As LiveOptions::heartbeat.
+  void beat(const ShowState& state, bool roll_called);
   /// The options borrow the desk.
   void take_up(const CutOff& cut, AfterDeath policy, RunDesk& desk, LiveOptions& live);
   /// Another plan is led from now on. @param digest config::digest_of

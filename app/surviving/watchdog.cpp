@@ -33,13 +33,13 @@ void Notifier::say(std::string_view message) const noexcept {
                  reinterpret_cast<const sockaddr*>(&to), length);
 }
 
-void Watchdog::look(const DeskView& view, RunDesk& /*desk*/) {
+void Watchdog::beat(const ShowState& state, bool roll_called) {
   if (!notifier_.wanted()) return;
-  if (view.roll_called && !ready_told_) {
+  if (roll_called && !ready_told_) {
     ready_told_ = true;
     notifier_.say("READY=1");
   }
-  const Instant at = view.show.at;
+  const Instant at = state.at;
   // Half of the period, and half of that for the time between two looks.
   if (!notifier_.period() || (lived_at_ && at - *lived_at_ < *notifier_.period() / 2)) return;
   lived_at_ = at;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/surfaces/surface.hpp"
+#include "app/live/cue_thread.hpp"
 #include "core/file_descriptor.hpp"
 #include "core/time.hpp"
 
@@ -29,11 +29,14 @@ class Notifier {
 };
 
 /// Says that the run is ready when the roll call is over, and that it lives only while the cue thread does: what it has
-/// published has to be newer each time.
-class Watchdog final : public Surface {
+/// published has to be newer each time. One thread, which waits for no other one.
+class Watchdog {
  public:
-  void look(const DeskView& view, RunDesk& desk) override;
-  [[nodiscard]] bool listens() const override { return false; }
+  /// Some fifty times a second. @param state what the cue thread has published last
+  void beat(const ShowState& state, bool roll_called);
+  /// The run ends: that the cue thread says nothing from here on is no sign of death. Any thread, after the last
+  /// `beat`.
+  void end() const noexcept { notifier_.say("STOPPING=1"); }
 
  private:
   Notifier notifier_;

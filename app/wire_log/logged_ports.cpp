@@ -21,6 +21,9 @@ using drivers::ModbusReply;
 using drivers::ModbusRequest;
 using drivers::SendStatus;
 using Bytes = std::vector<std::uint8_t>;
+using Carried = std::atomic<Duration::rep>;
+
+void add(Carried& carried, Duration time) { carried.fetch_add(time.count(), std::memory_order_relaxed); }
 
 void append(Bytes& bytes, std::uint32_t value, int size) {
   for (int i = size - 1; i >= 0; --i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -29,7 +32,8 @@ void append(Bytes& bytes, std::uint32_t value, int size) {
 /// LINKTYPE_RTAC_SERIAL: seconds and microseconds (unused), event, control lines, footer, then the bytes.
 class LoggedStream final : public ByteStream {
  public:
-  LoggedStream(WireLog& log, std::size_t bus, ByteStream& port) : log_(log), bus_(bus), port_(port) {
+  LoggedStream(WireLog& log, std::size_t bus, ByteStream& port, Carried& carried)
+      : log_(log), bus_(bus), port_(port), carried_(carried) {
     packet_.reserve(kHeader + 4096);
   }
   SendStatus write(std::span<const std::uint8_t> bytes) override {
@@ -55,19 +59,22 @@ class LoggedStream final : public ByteStream {
     packet_.assign(kHeader, 0);
     packet_[8] = heading == Heading::sent ? kTransmit : kReceive;
     packet_.insert(packet_.end(), bytes.begin(), bytes.end());
+    add(carried_, port_.wire_time(bytes.size()));
     log_.record(bus_, heading, packet_);
   }
 
   WireLog& log_;
   std::size_t bus_;
   ByteStream& port_;
+  Carried& carried_;
   Bytes packet_;
 };
 
 /// LINKTYPE_CAN_SOCKETCAN: identifier with its flags, big-endian, length, FD flags, two bytes unused, data.
 class LoggedCan final : public CanPort {
  public:
-  LoggedCan(WireLog& log, std::size_t bus, CanPort& port) : log_(log), bus_(bus), port_(port) {}
+  LoggedCan(WireLog& log, std::size_t bus, CanPort& port, Carried& carried)
+      : log_(log), bus_(bus), port_(port), carried_(carried) {}
   SendStatus send(const CanFrame& frame) override {
     const SendStatus status = port_.send(frame);
     if (status == SendStatus::accepted) record(Heading::sent, frame);
@@ -92,6 +99,7 @@ class LoggedCan final : public CanPort {
   void record(Heading heading, const CanFrame& frame) {
     std::array<std::uint8_t, 8 + 64> packet{};
     const bool error = frame.kind == CanFrame::Kind::error;
+    if (!error) add(carried_, port_.wire_time(frame));
     const std::uint32_t id = frame.id | (error ? kErrorFlag : 0);
     for (std::size_t i = 0; i < 4; ++i) packet[i] = static_cast<std::uint8_t>(id >> (24 - 8 * i));
     const std::size_t length = error ? 8 : frame.length;
@@ -105,6 +113,7 @@ class LoggedCan final : public CanPort {
   WireLog& log_;
   std::size_t bus_;
   CanPort& port_;
+  Carried& carried_;
 };
 
 /// Function code and data of the reply that has become this one; nothing where none has come.
@@ -201,15 +210,17 @@ class Connection {
 
 class LoggedModbus final : public ModbusPort {
  public:
-  LoggedModbus(WireLog& log, std::size_t bus, bool tcp, ModbusPort& port)
-      : log_(log), bus_(bus), tcp_(tcp), port_(port), connection_(bus) {}
+  LoggedModbus(WireLog& log, std::size_t bus, bool tcp, ModbusPort& port, Carried& carried)
+      : log_(log), bus_(bus), tcp_(tcp), port_(port), carried_(carried), connection_(bus) {}
 
   SendStatus submit(const ModbusRequest& request) override {
     if (port_.busy()) return port_.submit(request);
     // Told before it is sent: a port of a blocking library has the reply when it comes back.
     record(Heading::sent, request.unit, sim::request_pdu(request), ++transaction_);
     request_ = request;
-    return port_.submit(request);
+    const SendStatus status = port_.submit(request);
+    if (status == SendStatus::accepted) add(carried_, port_.wire_time(request));
+    return status;
   }
   std::optional<ModbusReply> poll() override {
     auto reply = port_.poll();
@@ -233,6 +244,7 @@ class LoggedModbus final : public ModbusPort {
   std::size_t bus_;
   bool tcp_;
   ModbusPort& port_;
+  Carried& carried_;
   Connection connection_;
   ModbusRequest request_;
   std::uint16_t transaction_ = 0;
@@ -241,12 +253,13 @@ class LoggedModbus final : public ModbusPort {
 }  // namespace
 
 drivers::PortReference LoggedPorts::before(std::size_t bus, BusKind kind, drivers::PortReference port) {
+  Carried& carried = carried_.emplace_back(0);
   if (auto* const* stream = std::get_if<ByteStream*>(&port)) {
-    owned_.emplace_back(std::make_unique<LoggedStream>(log_, bus, **stream));
+    owned_.emplace_back(std::make_unique<LoggedStream>(log_, bus, **stream, carried));
   } else if (auto* const* can = std::get_if<CanPort*>(&port)) {
-    owned_.emplace_back(std::make_unique<LoggedCan>(log_, bus, **can));
+    owned_.emplace_back(std::make_unique<LoggedCan>(log_, bus, **can, carried));
   } else if (auto* const* modbus = std::get_if<ModbusPort*>(&port)) {
-    owned_.emplace_back(std::make_unique<LoggedModbus>(log_, bus, kind == BusKind::modbus_tcp, **modbus));
+    owned_.emplace_back(std::make_unique<LoggedModbus>(log_, bus, kind == BusKind::modbus_tcp, **modbus, carried));
   }
   return drivers::reference(owned_.back());
 }

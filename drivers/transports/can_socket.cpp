@@ -250,6 +250,24 @@ Duration CanSocket::wire_time(const CanFrame& frame) const {
   return Duration((bits * 1'000'000'000 + bits_per_second_ - 1) / bits_per_second_);
 }
 
+std::string CanSocket::trouble() const {
+  if (state() < CanState::stalled) return {};
+  const std::string interface = "CAN interface \"" + interface_ + "\": ";
+  switch (state()) {
+    case CanState::bus_off:
+      return interface + "bus-off: silent until it is restarted (wiring and bit rate; restart-ms 100 restarts it)";
+    case CanState::down:
+      return interface + "taken down, or its adapter is unplugged";
+    case CanState::stalled:
+      return interface + "frames wait and none leaves: nobody acknowledges (cable, terminators, power of the markers)";
+    case CanState::active:
+    case CanState::warning:
+    case CanState::passive:
+      return {};
+  }
+  return {};
+}
+
 Result<std::unique_ptr<CanPort>> open_can(const std::string& interface, int bits_per_second) {
   static const SteadyClock clock;
   auto socket = open_socket(interface);

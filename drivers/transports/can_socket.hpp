@@ -41,6 +41,7 @@ class CanSocket final : public CanPort {
   [[nodiscard]] std::size_t queued() const override { return in_flight_.size(); }
   [[nodiscard]] CanState state() const override;
   [[nodiscard]] int poll_handle() const override { return socket_.get(); }
+  [[nodiscard]] std::string trouble() const override;
 
  private:
   enum class Heard { nothing, frame, other };

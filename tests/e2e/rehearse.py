@@ -243,6 +243,7 @@ def make_cases(Stage, program):
             self.addCleanup(os.close, its)
             process = self.start_at(its, *options)
             wait_for(lambda: not termios.tcgetattr(its)[3] & termios.ICANON, "keys one by one")
+            self.assertFalse(termios.tcgetattr(its)[0] & termios.IXON, "Ctrl-S would stop what the show says")
             return process, ours, its
 
         def start_at(self, its, *options):

@@ -112,6 +112,79 @@ def make_cases(Stage, footlight, program, full):
             _, said = footlight("run", self.show, "--transport-map", self.map, "--lead", "0.0.0.0:0", status=2)
             self.assertIn("--lead 0.0.0.0:0: an address that other machines reach needs --lead-token", said)
 
+        def test_wires_that_are_gone_are_an_alarm_each_and_come_back(self):
+            with socket.socket() as one:
+                one.bind(("127.0.0.1", 0))
+                port = one.getsockname()[1]
+            self.make_show()
+            self.serve("--ports-from", str(port))
+            desk = self.desk()
+            stages = lambda: {s["name"]: (s["state"], s["text"]) for s in desk.state["readiness"]["stages"]}
+            alarms = lambda: [line["alarm"] for line in list(desk.lines) if "alarm" in line]
+            wait_for(lambda: stages()["roll-call"] == ("SUCCESS", "12 nodes answer"), "all nodes")
+            self.sim.kill()
+            self.sim.wait()
+            wait_for(lambda: stages()["roll-call"][0] == "ERROR", "the roll call to say so")
+            wait_for(lambda: all(bus["silent"] == bus["unconfirmed"] == bus["nodes"] for bus in desk.state["buses"]), f"all nodes silent, not {desk.state['buses']}")
+            self.assertTrue(stages()["roll-call"][1].startswith("96 of 96 markers silent: "), stages())
+            self.assertEqual((stages()["plan-on-nodes"][0], stages()["looks"][0]), ("WARNING", "WARNING"), stages())
+            wait_for(lambda: stages()["buses"][0] == "ERROR", "the ports")
+            self.assertEqual(sorted(alarm.split('"')[1] for alarm in alarms()), ["left", "middle", "right"], alarms())
+            self.assertTrue(any(bus["trouble"] for bus in desk.state["buses"]))
+            for name in os.listdir(self.ports):
+                os.remove(os.path.join(self.ports, name))
+            self.serve("--ports-from", str(port))
+            wait_for(lambda: stages()["roll-call"][0] == "SUCCESS" and stages()["buses"][0] == "SUCCESS", "the wires", 40)
+            for bus in ("left", "middle", "right"):
+                wait_for(lambda: any(note.startswith(f'bus "{bus}": all ') for note in self.notes(desk)), f"the note of {bus}")
+            self.assertLessEqual(len(alarms()), 6, alarms())
+            desk.say("go")
+            desk.until("the end of cue 1", phase="stands", standby="2")
+            wait_for(lambda: all(bus["unconfirmed"] == 0 for bus in desk.state["buses"]), "all nodes right")
+            desk.say("quit")
+            report = desk.report()
+            self.assertEqual(desk.process.wait(20), 0)
+            self.assert_floor(report)
+            said = self.journal()["entries"]
+            self.assertEqual(len({e["text"].split(":")[0] for e in said if e["kind"] == "health" and "answers again" in e["text"]}), 3, said)
+            self.assertTrue(any(e["kind"] == "alarm" and 'bus "left"' in e["text"] for e in said))
+
+        def test_a_reader_that_stops_makes_nobody_wait_and_is_told_in_its_order(self):
+            self.make_show()
+            self.serve()
+            process = subprocess.Popen([program(), "run", self.show, "--transport-map", self.map, "--status-lines", "--count-in", "0", "--go-guard", "0.2", "--supervised"],
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait(), process.stdin.close(), process.stdout.close(), process.stderr.close()))
+            for line in process.stdout:
+                if json.loads(line).get("state", {}).get("ready"):
+                    break
+
+            def say(*orders):
+                process.stdin.write("".join(order + "\n" for order in orders))
+                process.stdin.flush()
+
+            child = self.child_of(process)
+            lit = lambda: len(self.changes())
+            before = lit()
+            # From here on nobody reads. Each state is more than a kilobyte: the pipe is full after some fifty.
+            for i in range(300):
+                say("state", f"note all {i}")
+                time.sleep(0.005)
+            time.sleep(2.5)
+            say("go")
+            time.sleep(2.5)
+            say("go")
+            wait_for(lambda: lit() > before, "lamps of cue 2, which GO has started")
+            time.sleep(8)  # to the end of the show, which nobody can read
+            self.assertEqual(self.child_of(process), child, "it is the same run: nobody has taken it for dead")
+            say("quit")
+            said = [json.loads(line) for line in process.stdout]
+            self.assertEqual(process.wait(30), 0, process.stderr.read())
+            notes = [line["answer"]["order"] for line in said if line.get("answer", {}).get("order", "").startswith("note all")]
+            self.assertEqual(notes, [f"note all {i}" for i in range(300)], "every answer, in its order")
+            self.assertEqual([line["answer"]["text"] for line in said if line.get("answer", {}).get("order") == "go"], ["the cue starts"] * 2)
+            self.assertIn("report", said[-1])
+
         def test_memory_and_handles_stay_flat(self):
             row, = self.soak("--hours", "0.2" if full else "0.015")
             self.assertEqual(row["wrong"], 0, row)

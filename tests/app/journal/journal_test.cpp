@@ -45,10 +45,7 @@ struct Ears final : Surface {
 
 class JournalTest : public ::testing::Test {
  protected:
-  JournalTest() : small_(tests::random_show(6, 6, 4, 3, 2, 1)), desk_(small_.show, small_.plan) {
-    small_.rig = tests::lamps_everywhere(small_.show.stage.grid, {BusKind::serial}, 115'200);
-    board_.emplace(small_.rig.nodes.size());
-  }
+  JournalTest() : small_(tests::random_show(6, 6, 4, 3, 2, 1)), desk_(small_.show, small_.plan) {}
   JournalRun run() const { return {0, {}, "1.2", "/shows/a.yaml", "abc", {}, 7, {}, {}}; }
   DeskView view(double position_s, bool runs) const {
     DeskView view;
@@ -79,16 +76,16 @@ class JournalTest : public ::testing::Test {
   std::filesystem::path path_ = folder_.path() / "journal.sqlite";
   tests::SmallShow small_;
   RunDesk desk_;
-  std::optional<NodeBoard> board_;
 };
 
 TEST_F(JournalTest, HasWhatHappenedAndWhoSaidSoAndThePlan) {
   {
-    Journal journal(path_, run(), small_.rig, &*board_);
+    Journal journal(path_, run());
     journal.look(view(4, false), desk_);
     journal.told(answer("go", "the cue starts"));
     journal.told(answer("jump cue 9", "no cue \"9\"", true));
     journal.told({RunEvent::Kind::alarm, "bus \"left\" is down"});
+    journal.health_is("bus \"left\": silent: left-1");
     journal.plan_is("def");
     journal.close(kOver);
   }
@@ -102,22 +99,8 @@ TEST_F(JournalTest, HasWhatHappenedAndWhoSaidSoAndThePlan) {
   EXPECT_TRUE(reading.runs[0].ended);
   EXPECT_THAT(lines_of(reading),
               ElementsAre("answer|go|osc 10.0.0.4|the cue starts", "answer|jump cue 9|osc 10.0.0.4|no cue \"9\"|no",
-                          "alarm|||bus \"left\" is down", "plan|||def"));
+                          "alarm|||bus \"left\" is down", "health|||bus \"left\": silent: left-1", "plan|||def"));
   EXPECT_EQ(reading.entries[0].position, instant_at(4));
-}
-
-TEST_F(JournalTest, ANodeThatFallsSilentAndComesBackIsWrittenDownOnce) {
-  {
-    Journal journal(path_, run(), small_.rig, &*board_);
-    journal.look(view(0, false), desk_);
-    board_->put(0, {0, NodeBoard::kQuarantined});
-    journal.look(view(0, false), desk_);
-    journal.look(view(0, false), desk_);
-    board_->put(0, {0, NodeBoard::kRight});
-    journal.look(view(0, false), desk_);
-  }
-  const std::string name = "health|||node \"" + small_.rig.nodes[0].name + "\" of bus \"" + small_.rig.buses[0].name;
-  EXPECT_THAT(lines_of(read()), ElementsAre(name + "\" is silent", name + "\" answers again"));
 }
 
 TEST_F(JournalTest, ThePlaceIsWrittenAtEveryChangeAndOnceASecondWhileItMoves) {
@@ -127,7 +110,7 @@ TEST_F(JournalTest, ThePlaceIsWrittenAtEveryChangeAndOnceASecondWhileItMoves) {
     return count.step() ? count.integer(0).value_or(-1) : -1;
   };
   {
-    Journal journal(path_, run(), small_.rig, nullptr);
+    Journal journal(path_, run());
     for (int i = 0; i < 50; ++i) journal.look(view(4, false), desk_);
     for (int i = 0; i < 101; ++i) {
       DeskView now = view(4, true);
@@ -191,7 +174,7 @@ TEST_F(JournalTest, WhatIsSaidOfTimeAHoldOrReadinessIsAPlaceOfItsOwnThoughNothin
     const auto reading = read_journal(path_);  // its own thread may be making it
     return reading ? reading->last_place.value_or(Place{}) : Place{};
   };
-  Journal journal(path_, run(), small_.rig, nullptr);
+  Journal journal(path_, run());
   DeskView now = view(4, false);
   journal.look(now, desk_);
   const auto seen = [&](const auto& there) {
@@ -217,7 +200,7 @@ TEST_F(JournalTest, ADiskThatTakesNothingIsAnAlarmAndTheShowGoesOn) {
   const rlimit small{65'536, before.rlim_max};
   const auto old = ::signal(SIGXFSZ, SIG_IGN);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  Journal journal(path_, run(), small_.rig, nullptr);
+  Journal journal(path_, run());
   const std::string long_text(2000, 'x');
   wait_for([&] {
     journal.told({RunEvent::Kind::note, long_text});
@@ -242,7 +225,7 @@ TEST_F(JournalTest, ADiskThatTakesNothingIsAnAlarmAndTheShowGoesOn) {
 }
 
 TEST_F(JournalTest, AFolderThatIsNotThereIsAnAlarmAndNothingElse) {
-  Journal journal(folder_.path() / "no" / "journal.sqlite", run(), small_.rig, nullptr);
+  Journal journal(folder_.path() / "no" / "journal.sqlite", run());
   Ears ears;
   desk_.add(ears);
   wait_for([&] {
@@ -334,7 +317,7 @@ TEST_F(CutOffTest, AnotherPlansPlacesMeanNothing) {
 
 TEST_F(CutOffTest, TheLastPlanThatWasTakenWhileItRanIsTheOneThatCounts) {
   {
-    Journal journal(path_, run(), small_.rig, nullptr);
+    Journal journal(path_, run());
     journal.look(view(4, false), desk_);
     journal.plan_is("def");
     journal.close("killed");

@@ -89,6 +89,63 @@ TEST_F(LiveRunTest, EveryMarkerShowsTheLastSwitchInTheEnd) {
   }
 }
 
+TEST_F(LiveRunTest, WiresThatAreGoneAreToldWithTheirReasonAndNothingOnThemIsConfirmedAnyMore) {
+  const auto ports = open();
+  LiveOptions options;
+  NodeBoard board(small_.rig.nodes.size());
+  options.nodes = &board;
+  std::vector<BusView> last;
+  bool served = true;
+  const auto all = [&](auto&& which) { return std::ranges::all_of(last, which); };
+  options.desk = [&](const DeskView& view) {
+    DeskWishes wishes;
+    last = view.buses;
+    if (!view.roll_called) return wishes;
+    if (served && all([](const BusView& bus) { return bus.unconfirmed == 0 && bus.trouble.empty(); })) {
+      served = false;
+      stop_serving();
+      served_.reset();
+    }
+    wishes.ends =
+        !served && all([](const BusView& bus) { return !bus.trouble.empty() && bus.unconfirmed == bus.nodes; });
+    return wishes;
+  };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->unconfirmed, small_.rig.nodes.size());
+  for (const BusView& bus : last) EXPECT_EQ(bus.load, std::nullopt) << "nobody has reckoned it";
+  EXPECT_EQ(last[0].trouble.empty(), false);
+  for (std::size_t n = 0; n < board.size(); ++n)
+    EXPECT_EQ(board.at(n).flags & ~NodeBoard::kQuarantined, NodeBoard::kSilent);
+}
+
+TEST_F(LiveRunTest, TheHeartGoesOnWhileTheDeskIsStuckAndSaysWhatTheCueThreadSays) {
+  const auto ports = open();
+  LiveOptions options;
+  std::atomic<int> beats{0};
+  std::atomic<bool> grew{true};
+  Instant last = Instant::min();
+  options.heartbeat = [&](const ShowState& state, bool) {
+    grew.store(grew.load() && state.at >= last);
+    last = state.at;
+    beats.fetch_add(1);
+  };
+  int looks = 0;
+  options.desk = [&](const DeskView&) {
+    // A surface that takes its time, once: nobody beats for the desk.
+    if (++looks == 1) {
+      const int before = beats.load();
+      while (beats.load() < before + 5) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    DeskWishes wishes;
+    wishes.ends = looks > 3;
+    return wishes;
+  };
+  const auto report = live_run(small_.show, small_.plan, small_.rig, ports, options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(grew.load());
+}
+
 TEST_F(LiveRunTest, WithoutGoTheOpeningStandsAndStopEndsIt) {
   const auto ports = open();
   std::atomic<bool> stop{false};

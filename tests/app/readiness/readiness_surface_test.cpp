@@ -47,7 +47,9 @@ class ReadinessSurfaceTest : public ::testing::Test {
     for (const Stage stage : {Stage::show, Stage::plan, Stage::buses, Stage::probes, Stage::time}) {
       readiness_->tell(stage, State::success, "told");
     }
-    surface_.emplace(*readiness_, rig_, board_, desk_, arms);
+    health_.emplace(rig_, board_, desk_, nullptr);
+    desk_.add(*health_);
+    surface_.emplace(*readiness_, rig_, board_, *health_, desk_, arms);
     desk_.add(*surface_);
   }
   DeskWishes look() {
@@ -67,6 +69,7 @@ class ReadinessSurfaceTest : public ::testing::Test {
   NodeBoard board_;
   Ears ears_;
   std::optional<Readiness> readiness_;
+  std::optional<BusHealth> health_;
   std::optional<ReadinessSurface> surface_;
   DeskView view_;
 };
@@ -145,6 +148,45 @@ TEST_F(ReadinessSurfaceTest, GoWaitsUntilEveryNodeHasToldWhatItKeeps) {
   board_.put(1, {0, NodeBoard::kRight});
   (void)look();
   EXPECT_EQ(readiness_->report()[4].state, State::success) << "a node that has restarted later stops nothing";
+}
+
+TEST_F(ReadinessSurfaceTest, StagesSayWhatIsNotReadyWhileAWireIsDownAndComeBack) {
+  open(Scope::rehearsal);
+  view_.buses = {{"bus1", 3, 0}};
+  (void)look();
+  view_.now = instant_at(1);
+  view_.buses[0].trouble = "unplugged";
+  for (std::size_t n = 0; n < 3; ++n) board_.put(n, kSilent);
+  (void)look();
+  auto stages = readiness_->report();
+  EXPECT_EQ(stages[2].state, State::error);
+  EXPECT_EQ(stages[2].text, "bus1 is down: unplugged");
+  EXPECT_EQ(stages[3].state, State::error);
+  EXPECT_THAT(stages[3].text, ::testing::StartsWith("36 of 36 markers silent: "));
+  EXPECT_EQ(stages[4].state, State::warning);
+  EXPECT_EQ(stages[4].text, "0 nodes confirm by sequence and check sum what this plan shows, 3 do not");
+  EXPECT_EQ(stages[6].state, State::warning);
+  view_.buses[0].trouble.clear();
+  for (std::size_t n = 0; n < 3; ++n) board_.put(n, kFine);
+  for (const double at_s : {2.0, 3.0}) {
+    view_.now = instant_at(at_s);
+    (void)look();
+  }
+  stages = readiness_->report();
+  EXPECT_EQ(stages[2].text, "1 open");
+  for (const std::size_t stage : {2U, 3U, 4U, 6U}) EXPECT_EQ(stages[stage].state, State::success) << stage;
+}
+
+TEST_F(ReadinessSurfaceTest, ANodeThatAnswersAndDoesNotShowWhatItShouldIsNoProof) {
+  open(Scope::rehearsal);
+  (void)look();
+  board_.put(1, {0, 0});
+  for (const double at_s : {1.0, 3.4, 3.6}) {
+    view_.now = instant_at(at_s);
+    (void)look();
+    EXPECT_EQ(readiness_->report()[4].state, at_s < 3.5 ? State::success : State::warning) << at_s;
+  }
+  EXPECT_EQ(readiness_->report()[3].state, State::success);
 }
 
 TEST_F(ReadinessSurfaceTest, WhereNobodyIsAtTheDeskItArmsItself) {

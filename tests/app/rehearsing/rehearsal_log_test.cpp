@@ -100,6 +100,7 @@ TEST_F(RehearsalLogTest, WritesDownWhatTheShowDidAndWhatWasSaid) {
 
 TEST_F(RehearsalLogTest, AProgramThatIsKilledLosesNothingThatItHasSaid) {
   rehearse();
+  EXPECT_TRUE(log_->flush());
   {
     std::ofstream cut(folder_.path() / RehearsalLog::kFile, std::ios::app);
     cut << R"({"what": "note", "te)";
@@ -153,6 +154,8 @@ TEST_F(RehearsalLogTest, ADiskThatTakesNoMoreIsToldOnceAndTheRehearsalGoesOn) {
   const rlimit none{0, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
   rehearse();
+  EXPECT_TRUE(log_->flush());
+  look();
   (void)setrlimit(RLIMIT_FSIZE, &before);
   (void)std::signal(SIGXFSZ, signal_before);
   EXPECT_EQ(log_->trouble(),

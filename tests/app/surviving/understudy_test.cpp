@@ -142,6 +142,7 @@ class LeadPortTest : public ::testing::Test {
     view.show.at = Instant(machine_time());
     view.show.where.position = instant_at(4);
     door_->look(view, desk_);
+    door_->beat(view.show);
   }
   FollowSettings settings(const std::string& plan = "abc", const std::string& token = "") {
     FollowSettings out;

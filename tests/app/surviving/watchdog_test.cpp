@@ -9,8 +9,6 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
-#include "app/surfaces/run_desk.hpp"
-#include "tests/support/small_show.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace footlight::app {
@@ -22,7 +20,7 @@ using ::testing::IsEmpty;
 /// A service manager's end of the socket.
 class WatchdogTest : public ::testing::Test {
  protected:
-  WatchdogTest() : small_(tests::random_show(6, 6, 4, 3, 2, 1)), desk_(small_.show, small_.plan) {
+  WatchdogTest() {
     const std::string path = folder_ / "notify";
     sockaddr_un us{};
     us.sun_family = AF_UNIX;
@@ -43,17 +41,14 @@ class WatchdogTest : public ::testing::Test {
     }
     return all;
   }
-  void look(Watchdog& watchdog, double at_s, bool roll_called) {
-    DeskView view;
-    view.show.at = instant_at(at_s);
-    view.roll_called = roll_called;
-    watchdog.look(view, desk_);
+  static void look(Watchdog& watchdog, double at_s, bool roll_called) {
+    ShowState state;
+    state.at = instant_at(at_s);
+    watchdog.beat(state, roll_called);
   }
 
   test::TemporaryFolder folder_;
   FileDescriptor socket_{::socket(AF_UNIX, SOCK_DGRAM, 0)};
-  tests::SmallShow small_;
-  RunDesk desk_;
 };
 
 TEST_F(WatchdogTest, IsReadyOnceWhenTheRollCallIsOver) {
@@ -72,6 +67,12 @@ TEST_F(WatchdogTest, IsFedOnlyWhileTheCueThreadSaysSomethingNew) {
   EXPECT_EQ(heard().size(), 5U) << "every half second in two seconds";
   for (int i = 0; i < 100; ++i) look(watchdog, 2, false);
   EXPECT_THAT(heard(), IsEmpty()) << "a calling thread that lives is no sign of life";
+}
+
+TEST_F(WatchdogTest, ARunThatEndsByItselfSaysSo) {
+  const Watchdog watchdog;
+  watchdog.end();
+  EXPECT_THAT(heard(), ElementsAre("STOPPING=1"));
 }
 
 TEST_F(WatchdogTest, WithoutAManagerNothingHappens) {

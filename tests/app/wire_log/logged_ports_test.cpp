@@ -59,12 +59,15 @@ TEST_F(LoggedPortsTest, CanFramesHaveTheHeaderOfSocketCan) {
   ASSERT_EQ(port.send({.id = 0x080, .length = 1, .data = {9}}), drivers::SendStatus::accepted);
   ASSERT_EQ(log_.all.size(), 1U);
   EXPECT_EQ(log_.all[0], (Recorded{3, Heading::sent, {0, 0, 0, 0x80, 1, 0, 0, 0, 9}}));
+  const Duration sync = port.wire_time({.id = 0x080, .length = 1, .data = {9}});
+  EXPECT_EQ(logged_.carried(0), sync);
   ASSERT_EQ(port.send({.id = 0x000, .length = 2, .data = {1, 0}}), drivers::SendStatus::accepted);
   ASSERT_EQ(port.send({.id = 0x080, .length = 1, .data = {10}}), drivers::SendStatus::accepted);
   run_for(milliseconds(20));
   drivers::CanFrame frame;
   ASSERT_TRUE(port.receive(frame)) << "the status after the SYNC";
   ASSERT_EQ(log_.all.size(), 4U);
+  EXPECT_EQ(logged_.carried(0), 2 * sync + port.wire_time({.id = 0, .length = 2, .data = {}}) + port.wire_time(frame));
   EXPECT_EQ(log_.all[3].heading, Heading::received);
   EXPECT_EQ(Bytes(log_.all[3].packet.begin(), log_.all[3].packet.begin() + 9), (Bytes{0, 0, 1, 0x81, 8, 0, 0, 0, 10}));
 }
@@ -76,6 +79,7 @@ TEST_F(LoggedPortsTest, SerialBytesHaveTheHeaderOfAnRtac) {
   Bytes buffer(10);
   EXPECT_EQ(port.read(buffer), 0U);
   EXPECT_EQ(log_.all.size(), 1U) << "nothing is no packet";
+  EXPECT_EQ(logged_.carried(0), port.wire_time(3));
 }
 
 TEST_F(LoggedPortsTest, RtuRequestsAndRepliesAreTheFramesOfTheLine) {

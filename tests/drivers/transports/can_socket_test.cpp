@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
@@ -88,9 +89,13 @@ TEST_F(CanSocketTest, FdFramesOfEveryLengthKeepTheirKind) {
 TEST_F(CanSocketTest, BusOffIsToldAndNothingIsSentUntilTheInterfaceHasRestarted) {
   arrive_error(CAN_ERR_BUSOFF);
   EXPECT_EQ(port_->state(), CanState::bus_off);
+  EXPECT_EQ(port_->trouble(),
+            "CAN interface \"nosuchcan\": bus-off: silent until it is restarted (wiring and bit rate; restart-ms 100 "
+            "restarts it)");
   EXPECT_EQ(port_->send(kFrame), SendStatus::down);
   arrive_error(CAN_ERR_RESTARTED);
   EXPECT_EQ(port_->state(), CanState::active);
+  EXPECT_EQ(port_->trouble(), "");
   EXPECT_EQ(port_->send(kFrame), SendStatus::accepted);
 }
 
@@ -113,6 +118,7 @@ TEST_F(CanSocketTest, ErrorCountersAreToldByTheirLevels) {
   arrive_error(CAN_ERR_CRTL, {0, CAN_ERR_CRTL_TX_PASSIVE});
   EXPECT_EQ(port_->state(), CanState::passive);
   arrive_error(CAN_ERR_CRTL, {0, CAN_ERR_CRTL_RX_OVERFLOW});
+  EXPECT_EQ(port_->trouble(), "") << "it still sends";
   EXPECT_EQ(port_->state(), CanState::passive) << "an overflow says nothing of the counters";
   EXPECT_EQ(port_->send(kFrame), SendStatus::accepted);
   arrive_error(CAN_ERR_CRTL, {0, CAN_ERR_CRTL_ACTIVE});
@@ -129,6 +135,7 @@ TEST_F(CanSocketTest, AFullQueueIsBusyAndAfter70MillisecondsStalled) {
   EXPECT_EQ(port_->state(), CanState::active);
   clock_.advance(milliseconds(70) + microseconds(200));
   EXPECT_EQ(port_->state(), CanState::stalled);
+  EXPECT_THAT(port_->trouble(), ::testing::HasSubstr("frames wait and none leaves: nobody acknowledges"));
 }
 
 TEST_F(CanSocketTest, AClosedWireIsDownAndLooksForItsInterfaceAgain) {
@@ -136,6 +143,7 @@ TEST_F(CanSocketTest, AClosedWireIsDownAndLooksForItsInterfaceAgain) {
   far_ = FileDescriptor(-1);
   EXPECT_EQ(port_->send(kFrame), SendStatus::down);
   EXPECT_EQ(port_->state(), CanState::down);
+  EXPECT_EQ(port_->trouble(), "CAN interface \"nosuchcan\": taken down, or its adapter is unplugged");
   EXPECT_EQ(port_->queued(), 0U) << "what waited is lost";
   clock_.advance(milliseconds(100));
   CanFrame frame;
