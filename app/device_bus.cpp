@@ -115,10 +115,14 @@ Result<std::unique_ptr<DeviceBus>> DeviceBus::open(Session& session, const Devic
     made->rig_.buses.push_back(std::move(bus).value());
     made->index_ = BusIndex(0);
   } else {
-    auto rig = read_rig_of(session, choice.show.empty() ? "show.yaml" : choice.show);
-    if (!rig) return std::move(rig).error();
-    made->rig_ = std::move(rig).value();
-    if (auto taken = take_transports_of(choice, made->rig_); !taken) return taken.error();
+    if (choice.rig != nullptr) {
+      made->rig_ = *choice.rig;
+    } else {
+      auto rig = read_rig_of(session, choice.show.empty() ? "show.yaml" : choice.show);
+      if (!rig) return std::move(rig).error();
+      made->rig_ = std::move(rig).value();
+      if (auto taken = take_transports_of(choice, made->rig_); !taken) return taken.error();
+    }
     const auto index = bus_named(made->rig_, choice.bus);
     if (!index) return index.error();
     made->index_ = *index;

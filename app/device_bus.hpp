@@ -22,13 +22,14 @@ namespace footlight::app {
 
 /// Which bus a technician means.
 struct DeviceBusChoice {
-  std::string bus;          ///< its name in the rig of `show`, or a URL
-  std::string show;         ///< show file; empty: show.yaml in this folder, where the bus is no URL
-  std::string transports;   ///< transport map: where the rig's buses are today; empty: where the rig says
-  std::string profile;      ///< of a URL's Modbus devices; empty: our own marker
-  int bits_per_second = 0;  ///< of a URL; 0: as rigs have it
-  bool simulated = false;   ///< the rig's nodes in virtual time, whatever its URLs
-  std::string faults;       ///< of the simulated ones
+  std::string bus;           ///< its name in the rig of `show`, or a URL
+  const Rig* rig = nullptr;  ///< read already, with its real URLs: instead of `show` and `transports`; borrowed
+  std::string show;          ///< show file; empty: show.yaml in this folder, where the bus is no URL
+  std::string transports;    ///< transport map: where the rig's buses are today; empty: where the rig says
+  std::string profile;       ///< of a URL's Modbus devices; empty: our own marker
+  int bits_per_second = 0;   ///< of a URL; 0: as rigs have it
+  bool simulated = false;    ///< the rig's nodes in virtual time, whatever its URLs
+  std::string faults;        ///< of the simulated ones
   std::uint64_t seed = 1;
   std::string wire_log;  ///< pcapng file of what goes over the wire; empty: none
 };

@@ -185,17 +185,13 @@ Result<std::unique_ptr<HeardCountIn>> heard(Session& session, const Options& opt
 Result<LiveReport> play(Session& session, const Options& options, PlannedShow& planned, Rig& rig,
                         const std::vector<drivers::Port>& ports, Traces& traces, WireLog* wire_log,
                         const std::optional<CutOff>& cut, Readiness& readiness, TimePlaces& time,
-                        const Attendance& attendance) {
+                        const Attendance& attendance, RunDesk& desk, Console* console) {
   const auto journal = journal_in(state_folder(options.state));
   const std::uint32_t epoch = cut && cut->epoch != 0 ? cut->epoch : next_epoch(journal);
   const Show& show = planned.loaded.show;
-  RunDesk desk(show, planned.plan());
   time.add_to(desk);
   PromptDesk prompt(session, show, planned.plan(), desk, options.status_lines, !options.go);
   desk.add(prompt);
-  auto console =
-      options.console.open(session, state_folder(options.state), show, planned.plan(), rig, desk, !options.go);
-  if (!console) return std::move(console).error();
   const SteadyClock clock;
   const auto remote = RemoteControl::open(options.remote, show, planned.plan(), desk, clock, !options.go);
   if (!remote) return remote.error();
@@ -205,7 +201,7 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   desk.add(editing);
   LiveOptions live;
   NodeBoard board(rig.nodes.size());
-  live.nodes = *console ? &(*console)->nodes() : &board;
+  live.nodes = console != nullptr ? &console->nodes() : &board;
   Surviving surviving(journal, std::filesystem::absolute(options.choice.show).string(),
                       config::digest_of(planned.plan()), epoch);
   if (auto opened = surviving.open_door(options.surviving, [&](const std::string& line) { session.note(line); });
@@ -253,7 +249,7 @@ Result<LiveReport> play(Session& session, const Options& options, PlannedShow& p
   live.limits = [&](const std::vector<controller::TempoLimit>& limits) {
     rehearsing.set_limits(limits);
     tell_limits(session, show, planned.plan(), limits);
-    if (*console) (*console)->take_limits(limits);
+    if (console != nullptr) console->take_limits(limits);
   };
   live.ready = [&](std::size_t unconfirmed) {
     session.note(unconfirmed == 0 ? "every node shows the opening"
@@ -338,16 +334,27 @@ int run_show(Session& session, const Options& options) {
   if (auto lit = check_delivery(planned->loaded.show, planned->plan(), rig); !lit) return session.fail(lit.error());
   if (auto wires = check_wires(session, rig.buses); !wires) return session.fail(wires.error());
   Readiness readiness(options.ready.scope);
-  BusesToAsk wires{options.choice.show, options.transports, rig};
+  const SteadyClock clock;
+  const Show& show = planned->loaded.show;
+  RunDesk desk(show, planned->plan());
+  std::unique_ptr<Console> console;
+  if (options.ready.scope != Scope::none) {
+    auto opened =
+        options.console.open(session, state_folder(options.state), show, planned->plan(), rig, desk, !options.go);
+    if (!opened) return session.fail(opened.error());
+    console = std::move(opened).value();
+  }
+  EarlyDesk early(show, planned->plan(), rig, readiness, clock);
+  if (console) early.add(*console);
+  BusesToAsk wires{rig};
   // Whatever was so before the machine was started again, somebody has to look.
   if (cut) wires.outlived = cut->same_start ? cut->place.readiness : "";
-  if (auto ready = preflight(session, wires, planned->loaded.show, readiness); !ready)
-    return session.fail(ready.error());
+  if (auto ready = preflight(session, wires, show, readiness, early); !ready) return session.fail(ready.error());
   if (options.ready.scope == Scope::none) {
     session.print(session.json ? stages_json(readiness) : stages_text(readiness));
     return 0;
   }
-  const SteadyClock clock;
+  if (console) console->begin();
   const auto time = options.time.open(planned->loaded.show, options.go, clock);
   if (!time) return session.fail(time.error());
   const auto ports = open_ports_again(session, rig, cut.has_value());
@@ -369,8 +376,9 @@ int run_show(Session& session, const Options& options) {
     recorder = WireRecorder::open(rig, {{}, file ? &file->stream() : nullptr}, clock);
     if (!recorder) return session.fail(recorder.error());
   }
-  const auto report =
-      play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time, attendance);
+  const auto report = play(session, options, *planned, rig, *ports, traces, recorder->get(), cut, readiness, **time,
+                           attendance, desk, console.get());
+  console.reset();  // tells the pages that the run is over
   if (auto kept = keep(session, **recorder, file); !kept) return session.fail(kept.error());
   if (!report) return session.fail(report.error());
   traces.write("report.json", live_json(*report, rig));

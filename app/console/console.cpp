@@ -109,6 +109,10 @@ void Console::plan_taken() {
   state_at_ = Instant::min();
 }
 
+void Console::begin() {
+  if (show_told_) plan_taken();
+}
+
 void Console::look(const DeskView& view, RunDesk& desk) {
   if (!show_told_) tell_show(view);
   for (SaidOrder& order : orders_.take(kOrdersOfALook)) {
@@ -121,6 +125,7 @@ void Console::look(const DeskView& view, RunDesk& desk) {
   tell_looks(view);
   tell_state(view);
   tell_health(view);
+  tell_untold(view);
 }
 
 void Console::tell_show(const DeskView& view) {
@@ -185,6 +190,13 @@ void Console::tell_health(const DeskView& view) {
   if (text == health_) return;
   health_ = text;
   server_->health(std::move(text));
+}
+
+/// Who has to be told, by name: too long for a state that is told ten times a second.
+void Console::tell_untold(const DeskView& view) {
+  if (view.edit.untold == nullptr || view.edit.untold == untold_) return;
+  untold_ = view.edit.untold;
+  server_->untold(Json{{"untold", *untold_}}.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace footlight::app

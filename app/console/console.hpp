@@ -37,6 +37,8 @@ class Console final : public Surface {
   [[nodiscard]] NodeBoard& nodes() { return board_; }
   /// Of the plan that plays, before the first look at it.
   void take_limits(std::vector<controller::TempoLimit> limits) { limits_ = std::move(limits); }
+  /// The show has its buses from here on: what was told of it before had no lamps.
+  void begin();
   /// "http://127.0.0.1:8440"
   [[nodiscard]] const std::string& address() const { return address_; }
   [[nodiscard]] bool needs_token() const { return needs_token_; }
@@ -53,6 +55,7 @@ class Console final : public Surface {
   void tell_looks(const DeskView& view);
   void tell_state(const DeskView& view);
   void tell_health(const DeskView& view);
+  void tell_untold(const DeskView& view);
 
   const Show& show_;
   const Plan& plan_;
@@ -71,6 +74,7 @@ class Console final : public Surface {
   std::vector<std::size_t> looks_wanted_;
   std::string state_;
   Instant state_at_ = Instant::min();
+  std::shared_ptr<const std::vector<std::string>> untold_;
   std::string health_;
   Instant health_at_ = Instant::min();
   std::unique_ptr<AuditLog> audit_;

@@ -130,6 +130,7 @@ void Room::hello(PersonId id, Person& person, const Hello& hello) {
   mailer_.send(id, log_letter());
   mailer_.send(id, alarms_letter());
   if (health_) mailer_.send(id, health_);
+  if (untold_) mailer_.send(id, untold_);
   tell_people();
 }
 
@@ -273,6 +274,11 @@ void Room::state(std::string json, std::string cue) {
 void Room::health(std::string json) {
   health_ = std::make_shared<const std::string>(std::move(json));
   to_all(health_);
+}
+
+void Room::untold(std::string json) {
+  untold_ = std::make_shared<const std::string>(std::move(json));
+  to_all(untold_);
 }
 
 void Room::take_plan(std::uint32_t epoch, std::string plan) {

@@ -78,6 +78,7 @@ class Room {
   /// @param cue for the audit log
   void state(std::string json, std::string cue);
   void health(std::string json);
+  void untold(std::string json);
   void take_plan(std::uint32_t epoch, std::string plan);
   /// What was refused before anybody came in.
   void refused(const std::string& from, const std::string& what, const std::string& why);
@@ -146,6 +147,7 @@ class Room {
   std::deque<Alarm> alarms_;
   Letter state_;
   Letter health_;
+  Letter untold_;
   std::string cue_;
 };
 

@@ -187,6 +187,10 @@ void ConsoleServer::health(std::string json) {
   works_->post([this, json = std::move(json)]() mutable { works_->room().health(std::move(json)); });
 }
 
+void ConsoleServer::untold(std::string json) {
+  works_->post([this, json = std::move(json)]() mutable { works_->room().untold(std::move(json)); });
+}
+
 void ConsoleServer::told(const RunEvent& event) {
   works_->post([this, event] { works_->room().told(event); });
 }

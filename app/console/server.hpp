@@ -59,6 +59,7 @@ class ConsoleServer {
   void take_way(Letter way);
   void state(std::string json, std::string cue);
   void health(std::string json);
+  void untold(std::string json);
   void told(const RunEvent& event);
 
   /// Switches whose looks somebody asks for.

@@ -159,7 +159,7 @@ Result<std::string> ShowEditing::repair(const Words& words) {
 
 Result<std::string> ShowEditing::list_changed() const {
   if (told_.size() == 0) return std::string("nobody has to be told anything");
-  return fmt::format("{} to be told: {}", told_.size(), list_of(told_.people()));
+  return fmt::format("{} to be told: {}", told_.size(), list_of(*told_.people()));
 }
 
 Result<std::string> ShowEditing::tick(const Words& words) {

@@ -242,7 +242,7 @@ EditView ShowEditing::view() const {
     out.transitions = coming_->changes.transitions;
     out.people = coming_->changes.people.size();
   }
-  out.untold = told_.size();
+  out.untold = told_.people();
   for (const std::string& id : wanted_.absent) out.absent.push_back({id, plays_as(id)});
   return out;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -21,18 +22,20 @@ constexpr std::size_t kMost_bytes = 16'000'000;
 ToldList::ToldList(const std::filesystem::path& folder, const std::string& show) : file_(folder / "untold.json") {
   std::error_code error;
   show_ = std::filesystem::weakly_canonical(show, error).string();
+  sort();
   const auto text = config::read_file(file_, kMost_bytes);
   const Json left = text ? Json::parse(*text, nullptr, false) : Json();
   if (!left.is_object() || !left.contains("show") || left["show"] != show_ || !left.contains("untold")) return;
   for (const Json& person : left["untold"]) {
     if (person.is_string()) people_.insert(person.get<std::string>());
   }
+  sort();
 }
 
-std::vector<std::string> ToldList::people() const {
-  std::vector<std::string> out(people_.begin(), people_.end());
-  std::ranges::sort(out, natural_less);
-  return out;
+void ToldList::sort() {
+  std::vector<std::string> list(people_.begin(), people_.end());
+  std::ranges::sort(list, natural_less);
+  list_ = std::make_shared<const std::vector<std::string>>(std::move(list));
 }
 
 Status<> ToldList::add(const std::vector<std::string>& people) {
@@ -50,8 +53,9 @@ Status<> ToldList::tick_all() {
   return write();
 }
 
-Status<> ToldList::write() const {
-  const Json document{{"show", show_}, {"untold", people()}};
+Status<> ToldList::write() {
+  sort();
+  const Json document{{"show", show_}, {"untold", *list_}};
   return config::write_file(file_, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

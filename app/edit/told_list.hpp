@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,15 +23,17 @@ class ToldList {
   Status<> tick_all();
   [[nodiscard]] bool contains(const std::string& person) const { return people_.contains(person); }
   [[nodiscard]] std::size_t size() const { return people_.size(); }
-  /// In natural order.
-  [[nodiscard]] std::vector<std::string> people() const;
+  /// In natural order; another list when it has changed.
+  [[nodiscard]] const std::shared_ptr<const std::vector<std::string>>& people() const { return list_; }
 
  private:
-  [[nodiscard]] Status<> write() const;
+  void sort();
+  [[nodiscard]] Status<> write();
 
   std::filesystem::path file_;
   std::string show_;
   std::set<std::string> people_;
+  std::shared_ptr<const std::vector<std::string>> list_;
 };
 
 }  // namespace footlight::app

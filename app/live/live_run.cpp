@@ -141,7 +141,9 @@ class LiveRun {
   bool ended_ = false;        ///< by the desk
   bool stands_back_ = false;  ///< markers follow another controller
   std::uint64_t fenced_before_ = 0;
-  bool nobody_ = true;  ///< is left at the desk
+  std::uint32_t led_plan_ = 0;  ///< SharedTarget::Told::plan
+  Instant led_since_ = kStart;  ///< of that plan
+  bool nobody_ = true;          ///< is left at the desk
 };
 
 Result<LiveReport> LiveRun::play() {
@@ -212,10 +214,15 @@ bool LiveRun::over() const {
          state_.reset.state == controller::Rehearsal::ResetState::none;
 }
 
-/// In the beginning the fence may be that of a controller that has just died, and ends with its lease.
+/// In the beginning the fence may be that of a controller that has just died, and ends with its lease; and nodes that
+/// have not heard yet of another plan refuse its frames.
 void LiveRun::look_for_others() {
   const std::uint64_t fenced = leadership_.refusals.load(std::memory_order_relaxed);
-  stands_back_ = fenced > fenced_before_ && clock_.now() > kStart + kDeadLead;
+  if (const std::uint32_t plan = cue_.state().plan; plan != led_plan_) {
+    led_plan_ = plan;
+    led_since_ = clock_.now();
+  }
+  stands_back_ = fenced > fenced_before_ && clock_.now() > led_since_ + kDeadLead;
   fenced_before_ = fenced;
 }
 

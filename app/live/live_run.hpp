@@ -105,6 +105,19 @@ struct ReadinessView {
   bool armed = true;
   std::vector<Stage> stages{};
   std::string outlives{};  ///< the program: for another one that takes the run up (Readiness::outlives)
+  /// A node that is exchanged for a spare.
+  struct Swap {
+    std::string node;
+    std::string_view step;  ///< "unplug", "plug-in", "done"
+    std::string text;       ///< what is to be done now
+  };
+  std::optional<Swap> swap{};
+  /// Before a show has its buses: a lamp that somebody has to look at.
+  struct Question {
+    std::string text;
+    std::string cell;
+  };
+  std::optional<Question> question{};
 };
 
 /// What stopping the show at once would do, and going on from there (docs/looks.md).
@@ -132,7 +145,8 @@ struct EditView {
   std::string text{};
   std::size_t transitions = 0;  ///< that change
   std::size_t people = 0;       ///< whose walks change
-  std::size_t untold = 0;       ///< people whose walks have changed and who have not been told
+  /// People whose walks have changed and who have not been told, in natural order; another list when it changes.
+  std::shared_ptr<const std::vector<std::string>> untold{};
   std::vector<Absent> absent{};
 };
 

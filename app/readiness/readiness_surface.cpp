@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "app/readiness/readiness_view.hpp"
+
 namespace footlight::app {
 namespace {
 
@@ -60,13 +62,9 @@ ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const N
     : readiness_(readiness), rig_(rig), board_(board), health_(health), unfenced_(unfenced_text(rig.buses)), arms_(arms) {
   for (const Node& node : rig.nodes) markers_ += node.channels.size();
   desk.bar(controller::kNotReady, readiness.refuses_go());
-  desk.add([&readiness](DeskView& view) {
-    view.readiness.scope = to_text(readiness.scope());
-    view.readiness.armed = !readiness.refuses_go();
-    view.readiness.outlives = readiness.outlives();
-    for (const Readiness::Report& stage : readiness.report()) {
-      view.readiness.stages.push_back({stage.name, to_text(stage.state), stage.text});
-    }
+  desk.add([this, &readiness](DeskView& view) {
+    view.readiness = view_of(readiness);
+    if (swap_) view.readiness.swap = {swap_->node(), swap_->step_name(), swap_->text()};
     if ((view.show.barred & controller::kNotReady) == 0) return;
     for (std::string& text : readiness.against()) view.against.push_back(std::move(text));
   });
@@ -184,9 +182,11 @@ void ReadinessSurface::judge_time(const DeskView& view) {
 Result<std::string> ReadinessSurface::start_swap(const std::vector<std::string>& words) {
   const std::string name = words.empty() ? "" : words[0];
   if (name == "off") {
-    if (!swap_ || swap_->over()) return input_error("swap: none is under way");
-    swap_->give_up();
-    return swap_->text();
+    if (!swap_) return input_error("swap: none is under way");
+    if (!swap_->over()) swap_->give_up();
+    std::string text = swap_->text();
+    swap_.reset();
+    return text;
   }
   const auto node = std::ranges::find(rig_.nodes, name, &Node::name);
   if (node == rig_.nodes.end()) return input_error("swap: the rig has no node \"" + name + "\"");

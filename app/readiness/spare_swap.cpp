@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/readiness/spare_swap.hpp"
 
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,11 @@ bool SpareSwap::look(bool silent, bool right) {
   if (step_ == Step::unplug && silent) step_ = Step::plug_in;
   if (step_ == Step::plug_in && right && !silent) step_ = Step::done;
   return step_ != before;
+}
+
+std::string_view SpareSwap::step_name() const {
+  constexpr std::array<std::string_view, 4> kNames{"unplug", "plug-in", "done", "given-up"};
+  return kNames.at(static_cast<std::size_t>(step_));
 }
 
 std::string SpareSwap::text() const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace footlight::app {
 
@@ -20,7 +21,10 @@ class SpareSwap {
   bool look(bool silent, bool right);
   void give_up() { step_ = Step::given_up; }
   [[nodiscard]] Step step() const { return step_; }
+  [[nodiscard]] const std::string& node() const { return node_; }
   [[nodiscard]] bool over() const { return step_ == Step::done || step_ == Step::given_up; }
+  /// "unplug", "plug-in" ...: for programs.
+  [[nodiscard]] std::string_view step_name() const;
   /// What is to be done now, for people.
   [[nodiscard]] std::string text() const;
 

@@ -32,6 +32,18 @@ std::string_view to_text(ResetState state) {
   return "";
 }
 
+std::size_t untold_of(const EditView& edit) { return edit.untold ? edit.untold->size() : 0; }
+
+Json question_of(const ReadinessView& readiness) {
+  if (!readiness.question) return nullptr;
+  return {{"text", readiness.question->text}, {"cell", readiness.question->cell}};
+}
+
+Json swap_of(const ReadinessView& readiness) {
+  if (!readiness.swap) return nullptr;
+  return {{"node", readiness.swap->node}, {"step", readiness.swap->step}, {"text", readiness.swap->text}};
+}
+
 std::string_view to_text(GateView::State state) {
   switch (state) {
     case GateView::State::closed:
@@ -154,7 +166,7 @@ std::string StateText::edit(const EditView& edit) {
                        edit.state == State::waits ? "take or discard" : "taken where the show stands next");
   }
   if (!edit.absent.empty()) text += fmt::format(" | {} absent", edit.absent.size());
-  if (edit.untold > 0) text += fmt::format(" | {} to be told", edit.untold);
+  if (untold_of(edit) > 0) text += fmt::format(" | {} to be told", untold_of(edit));
   return text;
 }
 
@@ -219,9 +231,11 @@ std::string StateText::changes(const DeskView& view) {
   for (const GateView& gate : view.gates) now += fmt::format(" {}", static_cast<int>(gate.state));
   for (const ReadinessView::Stage& stage : view.readiness.stages) now += fmt::format(" {}", stage.state);
   now += view.readiness.armed ? " armed" : " refused";
+  if (view.readiness.question) now += " " + view.readiness.question->cell;
+  if (view.readiness.swap) now += " " + view.readiness.swap->text;
   for (const BusView& bus : view.buses) now += fmt::format(" {} {} {}", bus.unconfirmed, bus.silent, bus.trouble);
   now += fmt::format(" {} {}", view.freeze.known, view.muted);
-  now += fmt::format(" {} {} {}", static_cast<int>(view.edit.state), view.edit.people, view.edit.untold);
+  now += fmt::format(" {} {} {}", static_cast<int>(view.edit.state), view.edit.people, untold_of(view.edit));
   for (const EditView::Absent& one : view.edit.absent) now += " " + one.id + "=" + one.cover;
   return now;
 }
@@ -267,7 +281,7 @@ std::string StateText::json(const DeskView& view) const {
                      {"text", view.edit.text},
                      {"transitions", view.edit.transitions},
                      {"people", view.edit.people},
-                     {"untold", view.edit.untold},
+                     {"untold", untold_of(view.edit)},
                      {"absent", std::move(absent)}};
   Json freeze = nullptr;
   if (view.freeze.known) {
@@ -306,6 +320,8 @@ std::string StateText::json(const DeskView& view) const {
       {"gates", std::move(gates)},
       {"against", view.against},
       {"readiness", std::move(readiness)},
+      {"question", question_of(view.readiness)},
+      {"swap", swap_of(view.readiness)},
       {"ready", view.roll_called},
       {"buses", std::move(buses)}};
   return Json{{"state", document}}.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -16,7 +16,7 @@ HOSTILE = "<img src=x onerror=alert(1)>"
 class Run:
     """`footlight run --console`; `lines` is what it says on stdout, as JSON."""
 
-    def __init__(self, case, program, *options, port=0):
+    def __init__(self, case, program, *options, port=0, patience_s=20, until_ready=True):
         self.notes = case.path("run.err")
         self.process = subprocess.Popen([program, "run", case.show, "--transport-map", case.map, "--status-lines", "--console", f"127.0.0.1:{port}", "--count-in", "2", "--go-guard", "0.3", *options],
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(self.notes, "w"), text=True)
@@ -24,9 +24,15 @@ class Run:
         self.reader = threading.Thread(target=self.read)
         self.reader.start()
         case.addCleanup(self.end)
-        found = wait_for(lambda: re.search(r"console: (http://127\.0\.0\.1:(\d+))", open(self.notes).read()), "the console's address")
+        found = wait_for(lambda: self.alive() and re.search(r"console: (http://127\.0\.0\.1:(\d+))", open(self.notes).read()), "the console's address", patience_s)
         self.url, self.port = found[1], int(found[2])
-        wait_for(lambda: self.state.get("ready"), "the roll call")
+        if until_ready:
+            wait_for(lambda: self.state.get("ready"), "the roll call", patience_s)
+
+    def alive(self):
+        if self.process.poll() is not None:
+            raise AssertionError(f"the program has ended with {self.process.returncode}:\n{open(self.notes).read()}")
+        return True
 
     def read(self):
         for line in self.process.stdout:

@@ -17,6 +17,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(ROOT, "tests", "e2e"))
 import big  # noqa: E402
+import ceremony  # noqa: E402
 import phones  # noqa: E402
 import rehearsal  # noqa: E402
 import stage  # noqa: E402
@@ -53,6 +54,7 @@ class Functions(Case):
 Stage = stage.make_stage(Case, footlight, lambda: PROGRAM)
 Rehearsal = rehearsal.make_cases(Stage, lambda: PROGRAM, lambda: PICTURES, FIGURES)
 Phones = phones.make_cases(Stage, lambda: PROGRAM, lambda: PICTURES)
+Ceremony = ceremony.make_cases(Stage, footlight, lambda: PROGRAM, lambda: PICTURES, FIGURES)
 Big = big.make_cases(Case, lambda: WEB, lambda: PICTURES, FIGURES)
 
 

@@ -2,6 +2,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { card_of } from "../../app/console/web/src/desk_panel.ts";
+import { edit_text } from "../../app/console/web/src/asked.ts";
+import { many } from "../../app/console/web/src/find.ts";
+import { is_muted } from "../../app/console/web/src/people_panel.ts";
 import { kDrawnSilent, kDrawnWrong, kLayers, Layers, Nodes, switch_at } from "../../app/console/web/src/floor_state.ts";
 import { Presses } from "../../app/console/web/src/keys.ts";
 import { centres_of, decode_looks, decode_nodes, decode_plan } from "../../app/console/web/src/protocol.ts";
@@ -149,6 +152,52 @@ test("the card tells what runs, what GO would do, and how long it lasts", () => 
   assert.equal(said({ cue: "2", standby: "3", against: ["spotter left"] }), "holds | HOLD | in cue 2 Ring | 3 | HELD BY spotter left");
   assert.equal(said({ phase: "finished", standby: null }), "finished | The show is over");
   assert.equal(said({ phase: "a new one" }), "a new one | Stands | 1");
+});
+
+test("before it is armed GO says what is missing, and nobody is held", () => {
+  assert.equal(said({ against: ["roll-call: nodes are asked"] }), "stands | Stands | 1 | NO GO YET: roll-call: nodes are asked");
+});
+
+test("the card tells who is not guided, and the notes of the standby cue", () => {
+  assert.equal(said({ phase: "runs", cue: "1", standby: "2", ends_in_s: 7, muted: "day, dusk" }), "runs | Runs | cue 1 Line | 2 | 7 | s until it | NOT GUIDED: day, dusk");
+  assert.equal(card_of(state({ standby_notes: "Smile." }), cues).notes, "Smile.");
+});
+
+test("what a HOLD would do is told while the show runs, what going on would after it", () => {
+  const told = (more) => {
+    const { freeze, unsafe } = card_of(state(more), cues);
+    return [unsafe, freeze];
+  };
+  const runs = { phase: "runs", cue: "1", standby: "2", ends_in_s: 7 };
+  assert.deepEqual(told({ ...runs, freeze: null }), [false, ""], "it is still being judged");
+  assert.deepEqual(told({ ...runs, freeze: { pairs: 0, until_count: null, resume_pairs: 0 } }), [false, "HOLD is safe here"]);
+  assert.deepEqual(told({ ...runs, freeze: { pairs: 1, until_count: 7.6, resume_pairs: 0 } }), [true, "HOLD now: 1 pair may touch until count 8. E, at the end, is better"]);
+  assert.deepEqual(told({ ...runs, freeze: { pairs: 1234, until_count: null, resume_pairs: 0 } }), [true, "HOLD now: 1,234 pairs may touch. E, at the end, is better"]);
+  assert.deepEqual(told({ cue: "1", freeze: { pairs: 9, until_count: null, resume_pairs: 3 } }), [true, "going on: 3 pairs may touch where people have walked on"]);
+  assert.deepEqual(told({ cue: "1", freeze: { pairs: 9, until_count: null, resume_pairs: 0 } }), [false, ""]);
+  assert.deepEqual(told({ freeze: { pairs: 9, until_count: null, resume_pairs: 0 } }), [false, ""], "nobody walks");
+});
+
+test("a change of the files can be taken when it is ready, and forgotten at any time", () => {
+  const told = (state, text = "") => {
+    const one = edit_text({ state, text, transitions: 2, people: 1400, untold: 0, absent: [] });
+    return one && [one.head, one.text, one.takes, one.drops];
+  };
+  assert.equal(told("none"), undefined);
+  assert.deepEqual(told("planning"), ["A change of the show is being planned …", "", false, true]);
+  assert.deepEqual(told("wrong", "show.yaml:3:1: error: x"), ["THE CHANGED FILE IS WRONG. Nothing is changed by it.", "show.yaml:3:1: error: x", false, true]);
+  assert.deepEqual(told("waits", "files"), ["Changed: 2 transitions, 1,400 people", "files", true, true]);
+  assert.deepEqual(told("taking").slice(2), [false, true]);
+});
+
+test("a range and a group are picked as a whole, anybody else by name", () => {
+  const show = { groups: [{ name: "dawn" }, { name: "Day" }], performers: [0, 0, 1, null].map((group, i) => ({ id: String(i + 1), name: String(i + 1), group })) };
+  assert.deepEqual(many(show, "2-3"), [1, 2]);
+  assert.deepEqual(many(show, "2 – 99"), [1, 2, 3]);
+  assert.deepEqual(many(show, " day"), [2]);
+  assert.deepEqual(["", "3", "3-2", "da", "5-9"].map((typed) => many(show, typed)), [[], [], [], [], []]);
+  assert.deepEqual(["dawn", "da", ""].map((group) => is_muted("no one, dawn", group)), [true, false, false]);
+  assert.equal(is_muted(undefined, "dawn"), false);
 });
 
 test("a reset move is asked for in words, and so is its impossibility", () => {

@@ -19,10 +19,10 @@ TEST(ToldList, WhoWasNotTickedIsThereInTheNextRunOfTheShow) {
     EXPECT_TRUE(list.add({"10", "9", "zoe"}));
     EXPECT_TRUE(list.add({"9", "1"}));
     EXPECT_TRUE(list.tick("10"));
-    EXPECT_THAT(list.people(), ElementsAre("1", "9", "zoe"));
+    EXPECT_THAT(*list.people(), ElementsAre("1", "9", "zoe"));
   }
   ToldList list(folder.path(), "show.yaml");
-  EXPECT_THAT(list.people(), ElementsAre("1", "9", "zoe"));
+  EXPECT_THAT(*list.people(), ElementsAre("1", "9", "zoe"));
   EXPECT_EQ(ToldList(folder.path(), "another.yaml").size(), 0U) << "people of another show";
   EXPECT_TRUE(list.tick_all());
   EXPECT_EQ(ToldList(folder.path(), "show.yaml").size(), 0U);
@@ -39,7 +39,7 @@ TEST(ToldList, AFileThatIsNoneIsAnEmptyList) {
 TEST(ToldList, WhatCannotBeWrittenIsKeptAllTheSame) {
   ToldList list("/nowhere/at/all", "show.yaml");
   EXPECT_FALSE(list.add({"1"}));
-  EXPECT_THAT(list.people(), ElementsAre("1"));
+  EXPECT_THAT(*list.people(), ElementsAre("1"));
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "app/load.hpp"
-#include "config/transport_map.hpp"
 #include "core/clock.hpp"
 #include "sim/endpoints/served_rig.hpp"
+#include "tests/support/small_show.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace footlight::app {
@@ -60,14 +60,13 @@ class Preflight : public ::testing::Test {
     ASSERT_TRUE(served) << served.error().message;
     served_ = std::move(served).value();
     rig_.buses[0].url = served_->served()[0].url;
-    folder_.write("map.yaml", config::transport_map_text({{"left", rig_.buses[0].url}}, "the test"));
     server_ = std::thread([this] {
       while (!over_.load()) served_->step(milliseconds(20), [](Instant) {});
     });
   }
   Readiness::Report roll_call(Readiness& readiness, const std::optional<std::string>& outlived = {}) {
-    const auto done =
-        preflight(session_, {folder_ / "show.yaml", folder_ / "map.yaml", rig_, outlived}, show_, readiness);
+    EarlyDesk desk(small_.show, small_.plan, rig_, readiness, clock_);
+    const auto done = preflight(session_, {rig_, outlived}, show_, readiness, desk);
     EXPECT_TRUE(done) << done.error().message;
     return readiness.report()[static_cast<std::size_t>(Readiness::Stage::roll_call)];
   }
@@ -78,6 +77,7 @@ class Preflight : public ::testing::Test {
   SteadyClock clock_;
   Rig rig_;
   Show show_;
+  tests::SmallShow small_ = tests::random_show(6, 4, 2, 1, 1, 1);  // what a desk speaks of
   std::unique_ptr<sim::ServedRig> served_;
   std::atomic<bool> over_{false};
   std::thread server_;

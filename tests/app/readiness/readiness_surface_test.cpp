@@ -200,12 +200,22 @@ TEST_F(ReadinessSurfaceTest, ASpareIsFollowedWhileTheShowGoesOn) {
   EXPECT_THAT(say("swap nobody"), ElementsAre("swap: the rig has no node \"nobody\""));
   EXPECT_EQ(say("swap " + rig_.nodes[1].name).at(0),
             "swap " + rig_.nodes[1].name + ", 1 of 2: unplug it from bus bus1. The others go on.");
+  (void)look();
+  ASSERT_TRUE(ears_.seen.readiness.swap.has_value());
+  EXPECT_EQ(ears_.seen.readiness.swap->node, rig_.nodes[1].name);
+  EXPECT_EQ(ears_.seen.readiness.swap->step, "unplug");
+  ears_.heard.clear();
   board_.put(1, kSilent);
   (void)look();
   EXPECT_THAT(ears_.heard, ElementsAre(::testing::HasSubstr("2 of 2: give the spare address 2")));
   board_.put(1, kFine);
   (void)look();
   EXPECT_THAT(ears_.heard, Contains(::testing::HasSubstr("the spare answers at address 2")));
+  (void)look();
+  EXPECT_EQ(ears_.seen.readiness.swap->step, "done") << "until somebody has read it";
+  EXPECT_THAT(say("swap off"), ElementsAre(::testing::HasSubstr("the spare answers at address 2")));
+  (void)look();
+  EXPECT_FALSE(ears_.seen.readiness.swap.has_value());
   EXPECT_THAT(say("swap off"), ElementsAre("swap: none is under way"));
 }
 

@@ -20,6 +20,9 @@ export interface Card {
   left_s: number | undefined;
   left_to: string;
   notice: string;
+  notes: string; // of the standby cue
+  freeze: string; // what a HOLD would do, or did
+  unsafe: boolean; // it says that people may touch
 }
 
 export function card_of(state: State, cues: Cue[]): Card {
@@ -40,6 +43,8 @@ export function card_of(state: State, cues: Cue[]): Card {
     left_s: undefined,
     left_to: "",
     notice: notice_of(state, held ? active : undefined),
+    notes: state.standby_notes ?? "",
+    ...freeze_of(state, held),
   };
   if (state.goes_in_s !== null && (state.phase === "counts-in" || state.phase === "resets")) {
     card.left_s = state.goes_in_s;
@@ -59,11 +64,24 @@ function waits(state: State): boolean {
 /** What has to be done first, then what is set. */
 function notice_of(state: State, held: Cue | undefined): string {
   const loop = state.loop ? say("loops", { from: clock_text(state.loop.from_s), to: clock_text(state.loop.to_s) }) : "";
-  return [to_do(state, held), loop].filter(Boolean).join(" · ");
+  const muted = state.muted ? say("not_guided", { names: state.muted }) : "";
+  return [to_do(state, held), loop, muted].filter(Boolean).join(" · ");
+}
+
+/** Before a HOLD what it would do, after it what going on would. */
+function freeze_of(state: State, held: boolean): { freeze: string; unsafe: boolean } {
+  const { freeze } = state;
+  if (!freeze) return { freeze: "", unsafe: false };
+  const many = (pairs: number) => say(pairs === 1 ? "one_pair" : "pairs", { n: pairs.toLocaleString("en") });
+  if (held) return freeze.resume_pairs > 0 ? { freeze: say("resume_unsafe", { pairs: many(freeze.resume_pairs) }), unsafe: true } : { freeze: "", unsafe: false };
+  if (state.phase !== "runs") return { freeze: "", unsafe: false };
+  if (freeze.pairs === 0) return { freeze: say("freeze_safe"), unsafe: false };
+  const until = freeze.until_count === null ? "" : say("freeze_until", { count: Math.ceil(freeze.until_count) });
+  return { freeze: say("freeze_unsafe", { pairs: many(freeze.pairs), until }), unsafe: true };
 }
 
 function to_do(state: State, held: Cue | undefined): string {
-  if (Array.isArray(state.against) && state.against.length > 0) return say("against", { names: state.against.map(fact_text).join(", ") });
+  if (Array.isArray(state.against) && state.against.length > 0) return say(waits(state) && state.cue === null ? "not_ready" : "against", { names: state.against.map(fact_text).join(", ") });
   const stands = waits(state);
   const to = clock_text(state.reset.to_s ?? 0);
   if (stands && state.reset.state === "being-planned") return say("reset_planned");
@@ -114,6 +132,10 @@ export class DeskPanel {
     set_text(by_id("countdown"), card.left_s === undefined ? "" : countdown_text(card.left_s - since_s));
     set_text(by_id("left_to"), card.left_to);
     set_text(by_id("notice"), card.notice);
+    set_flag(by_id("notice"), "title", card.notice || null);
+    set_text(by_id("standby_notes"), card.notes);
+    set_text(by_id("freeze"), card.freeze);
+    by_id("freeze").classList.toggle("unsafe", card.unsafe);
     this.draw_keys(state);
   }
 

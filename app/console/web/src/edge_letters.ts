@@ -3,6 +3,7 @@
 
 import type { Camera } from "./camera";
 import { column_letters } from "./cell_name";
+import { cell_from } from "./find";
 import type { Model } from "./model";
 import type { Show } from "./protocol";
 import type { Point } from "./tracks";
@@ -29,7 +30,8 @@ export class EdgeLetters {
   draw(model: Model, camera: Camera): void {
     const { show, centres } = model;
     if (!show || centres.length === 0) return;
-    const drawn = [camera.view().matrix.join(), camera.size.width, camera.size.height, document.documentElement.dataset.theme, document.documentElement.lang].join("|");
+    const asked = cell_from(model.state?.question?.cell ?? "", show.stage.columns, show.stage.rows);
+    const drawn = [asked, camera.view().matrix.join(), camera.size.width, camera.size.height, document.documentElement.dataset.theme, document.documentElement.lang].join("|");
     if (drawn === this.drawn_) return;
     this.drawn_ = drawn;
     const context = this.canvas_.getContext("2d");
@@ -43,6 +45,7 @@ export class EdgeLetters {
     context.textBaseline = "middle";
     this.columns(context, show, centres, camera);
     this.rows(context, show, centres, camera);
+    if (asked !== undefined) this.ring(context, camera.project({ x: centres[2 * asked], y: centres[2 * asked + 1] }));
     if (camera.front) return;
     const { columns, rows, pitch_m } = show.stage;
     const first = { x: centres[0], y: centres[1] };
@@ -62,6 +65,19 @@ export class EdgeLetters {
     write(say("stage_left"), { x: last.x + 0.5 * pitch_m, y: (first.y + last.y) / 2 }, 38, 0, Math.PI / 2);
   }
 
+  /** Around a lamp that somebody has to look at. */
+  private ring(context: CanvasRenderingContext2D, at: Point): void {
+    context.save();
+    context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--hold");
+    context.lineWidth = 4;
+    for (const radius of [14, 24]) {
+      context.beginPath();
+      context.arc(at.x, at.y, radius, 0, 2 * Math.PI);
+      context.stroke();
+    }
+    context.restore();
+  }
+
   /** Letters where they stay in sight, as many as there is room for. */
   private columns(context: CanvasRenderingContext2D, show: Show, centres: Float32Array, camera: Camera): void {
     const { columns, rows, pitch_m } = show.stage;
@@ -79,7 +95,8 @@ export class EdgeLetters {
   private rows(context: CanvasRenderingContext2D, show: Show, centres: Float32Array, camera: Camera): void {
     const { columns, rows, pitch_m } = show.stage;
     const step = steps(camera, rows, (i) => centres[2 * i * columns + 1], false);
-    for (let row = 0; row < rows; row += step) {
+    // 1, 5, 10: round numbers are found without counting.
+    for (let row = 0; row < rows; row += row === 0 && step >= 5 ? step - 1 : step) {
       for (const [column, side] of [[0, -1], [columns - 1, 1]]) {
         const cell = row * columns + column;
         const p = camera.project({ x: centres[2 * cell] + side * 0.5 * pitch_m, y: centres[2 * cell + 1] });

@@ -59,14 +59,32 @@ export function find(show: Show, typed: string): Found[] {
   return [...exact, ...others].slice(0, kMost);
 }
 
+/** Everybody whom a range or the name of a group means; none: it is neither. */
+export function many(show: Show, typed: string): number[] {
+  const text = typed.trim().toLowerCase();
+  const range = range_from(text);
+  const out: number[] = [];
+  show.performers.forEach((one, i) => {
+    const numbered = range !== undefined && range.from < range.to && i + 1 >= range.from && i + 1 <= range.to;
+    const group = one.group === null ? undefined : show.groups[one.group]?.name.toLowerCase();
+    if (numbered || (text !== "" && group === text)) out.push(i);
+  });
+  return out;
+}
+
 export class FindPanel {
   private readonly typed_ = by_id<HTMLInputElement>("search");
 
-  constructor(private readonly model_: Model, private readonly take_: (found: Found) => void) {
+  /** @param take_all a range or a group, as a whole */
+  constructor(private readonly model_: Model, private readonly take_: (found: Found) => void, private readonly take_all_: (performers: number[]) => void) {
     this.typed_.addEventListener("input", () => this.draw());
     this.typed_.addEventListener("keydown", (event) => {
-      const first = this.model_.show && find(this.model_.show, this.typed_.value)[0];
-      if (event.key === "Enter" && first) this.take_(first);
+      const { show } = this.model_;
+      if (event.key !== "Enter" || !show) return;
+      const all = many(show, this.typed_.value);
+      const first = find(show, this.typed_.value)[0];
+      if (all.length > 1) this.take_all_(all);
+      else if (first) this.take_(first);
     });
   }
 
@@ -86,6 +104,14 @@ export class FindPanel {
       row.append(button);
       return row;
     });
+    const together = many(show, this.typed_.value);
+    if (together.length > 1) {
+      const row = make("li");
+      const button = make("button", say("select_all", { n: together.length.toLocaleString("en") }), "all");
+      button.addEventListener("click", () => this.take_all_(together));
+      row.append(button);
+      rows.unshift(row);
+    }
     if (all.length === 0 && this.typed_.value.trim()) rows.push(make("li", say("nobody")));
     by_id("found").replaceChildren(...rows);
   }

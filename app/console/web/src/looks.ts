@@ -14,6 +14,7 @@ const kTries = 3;
 export class Looks {
   private readonly asked_ = new Map<number, number>(); // tries
   private readonly bytes_ = new Map<number, Uint8Array>();
+  private readonly blinking_ = new Set<number>(); // switches at which some lamp is not steady
   private changed_ = true;
 
   constructor(private readonly model_: Model, private readonly scene_: () => Scene | undefined, private readonly fetch_: Fetch) {}
@@ -21,7 +22,17 @@ export class Looks {
   clear(): void {
     this.asked_.clear();
     this.bytes_.clear();
+    this.blinking_.clear();
     this.changed_ = true;
+  }
+
+  /** Whether some lamp that is shown is not steady, by the switches that nodes have confirmed or that is looked at. */
+  blink(): boolean {
+    if (this.blinking_.size === 0) return false;
+    const { nodes, scrub_s } = this.model_;
+    if (scrub_s !== undefined) return this.blinking_.has(Math.max(0, this.model_.planned_switch(scrub_s)));
+    for (const index of nodes.switches()) if (this.blinking_.has(index)) return true;
+    return false;
   }
 
   nodes_changed(): void {
@@ -60,6 +71,9 @@ export class Looks {
       const layer = this.model_.layers.take(index, used);
       if (layer === undefined) return;
       this.bytes_.set(index, decoded.looks);
+      const effects = (this.model_.show?.looks ?? []).map((look) => look.effect !== "steady" && look.brightness > 0);
+      if (decoded.looks.some((look) => effects[look])) this.blinking_.add(index);
+      else this.blinking_.delete(index);
       this.scene_()?.take_looks(layer, decoded.looks);
       this.changed_ = true;
       this.forget();
@@ -73,10 +87,12 @@ export class Looks {
   private send_nodes(): void {
     const { nodes, layers } = this.model_;
     const state = new Uint8Array(2 * nodes.many);
+    const asked = this.model_.state?.ready !== false;
     for (let node = 0; node < nodes.many; ++node) {
       const index = nodes.index[node];
       state[2 * node] = index === kNothing ? kNoLayer : layers.peek(index) ?? kNoLayer;
-      state[2 * node + 1] = nodes.drawn_state(node);
+      // Before the roll call is over nobody is missing yet.
+      state[2 * node + 1] = asked ? nodes.drawn_state(node) : 0;
     }
     this.scene_()?.take_nodes(state);
     this.changed_ = false;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The console: connects the program with the panels.
 
+import { draw_edit, draw_question, draw_swap } from "./asked";
 import { CueList } from "./cue_list";
 import { DeskPanel } from "./desk_panel";
 import { by_id, make, set_text, show_if } from "./dom";
-import { FindPanel } from "./find";
+import { FindPanel, many } from "./find";
 import { listen_to_keys } from "./keys";
 import { kTokenWanted, Link } from "./link";
 import { Looks } from "./looks";
 import { Model, type Person } from "./model";
+import { PeoplePanel } from "./people_panel";
 import { draw_person } from "./person_card";
 import { Orders } from "./orders";
 import { type Alarm, type BusHealth, decode_nodes, decode_plan, type RunEvent, type State } from "./protocol";
@@ -48,7 +50,8 @@ class Console {
   private readonly cues_ = new CueList(this.model_, (number) => this.orders_.say(`jump cue ${number}`));
   private readonly side_ = new SidePanels(this.model_, (n) => this.link_.say({ acknowledge: n }), (order) => this.orders_.say(order));
   private readonly timeline_ = new Timeline(this.model_, () => undefined);
-  private readonly find_ = new FindPanel(this.model_, (found) => this.selection_.find(found));
+  private readonly find_ = new FindPanel(this.model_, (found) => this.selection_.find(found), (all) => this.selection_.take_all(all));
+  private readonly people_ = new PeoplePanel(this.model_, (order) => this.orders_.say(order), (prefix) => this.orders_.ask(prefix), (name) => this.pick(name));
   private stage_?: StageView;
   private readonly looks_ = new Looks(this.model_, () => this.stage_?.scene, (path) => this.program_.bytes(path));
   private resets_: string | undefined; // the reset move that is here
@@ -88,6 +91,7 @@ class Console {
     if (message.state) this.take_state(message.state as State);
     if ("seat" in message) this.take_seat(message.seat as { holder: number; name: string } | null);
     if (message.people) model.people = message.people as Person[];
+    if (Array.isArray(message.untold)) model.untold = message.untold.map(String);
     if (message.alarms) {
       model.alarms = message.alarms as Alarm[];
       this.side_.draw_alarms();
@@ -104,6 +108,7 @@ class Console {
   }
 
   private take_state(state: State): void {
+    if (this.model_.state?.ready !== state.ready) this.looks_.nodes_changed();
     this.model_.take_state(state, performance.now());
     const wanted = state.reset.state === "ready" || state.phase === "resets" || state.phase === "reset-held";
     const which = wanted ? `${state.reset.from_s} ${state.reset.to_s}` : undefined;
@@ -161,7 +166,7 @@ class Console {
   }
 
   private build(): void {
-    const { show, tracks, centres, selected } = this.model_;
+    const { show, tracks, centres, selected, marked } = this.model_;
     if (!show || !tracks) return;
     document.title = `${show.title} – Footlight`;
     set_text(by_id("title"), show.title);
@@ -169,7 +174,7 @@ class Console {
     set_text(by_id("stamp"), stamp.filter(Boolean).join(" · "));
     this.cues_.build();
     this.timeline_.build();
-    if (this.stage_) send_show(this.stage_.scene, show, tracks, centres, selected);
+    if (this.stage_) send_show(this.stage_.scene, show, tracks, centres, selected >= 0 ? [selected] : marked);
     this.stage_?.take_show();
   }
 
@@ -206,6 +211,9 @@ class Console {
     by_id("show_help").addEventListener("click", () => by_id<HTMLDialogElement>("help").showModal());
     by_id("help_close").addEventListener("click", () => by_id<HTMLDialogElement>("help").close());
     by_id("person_close").addEventListener("click", () => this.selection_.take(-1));
+    for (const button of document.querySelectorAll<HTMLElement>("[data-person]")) button.addEventListener("click", () => this.of_person(button.dataset.person ?? ""));
+    for (const answer of ["yes", "no", "skip"]) by_id(`probe_${answer}`).addEventListener("click", () => this.orders_.say(`probe ${answer}`));
+    by_id("swap_off").addEventListener("click", () => this.orders_.say("swap off"));
     for (const role of ["view", "operate"]) by_id(`pair_${role}`).addEventListener("click", () => this.link_.say({ pair: role }));
     by_id("join_form").addEventListener("submit", (event) => {
       event.preventDefault();
@@ -238,6 +246,24 @@ class Console {
   private ok(): void {
     for (const alarm of this.model_.alarms) if (alarm.acknowledged_by === null) this.link_.say({ acknowledge: alarm.n });
     this.orders_.say("ok");
+  }
+
+  /** What is said of whom was picked; what ends with dots is finished by hand. */
+  private of_person(order: string): void {
+    const one = this.model_.show?.performers[this.model_.selected];
+    if (!one) return;
+    if (order === "note") this.orders_.ask(`note person ${one.id} `);
+    else if (order === "cover") this.orders_.ask(`cover ${one.id}`);
+    else this.orders_.say(`${order} ${one.id}`);
+  }
+
+  /** A group, or somebody by her id. */
+  private pick(name: string): void {
+    const { show } = this.model_;
+    if (!show) return;
+    const index = show.performers.findIndex((one) => one.id === name);
+    if (index >= 0) this.selection_.find({ kind: "performer", index, text: name });
+    else this.selection_.take_all(many(show, name));
   }
 
   private open_find(): void {
@@ -291,7 +317,7 @@ class Console {
 
   private draw(now_ms: number): void {
     const planned = this.looks_.prepare();
-    this.stage_?.draw(now_ms, planned);
+    this.stage_?.draw(now_ms, planned, this.looks_.blink());
     this.desk_.draw(now_ms);
     this.timeline_.draw(now_ms);
     if (now_ms - this.slow_at_ms_ < 250) return;
@@ -299,6 +325,10 @@ class Console {
     this.cues_.draw();
     this.side_.draw_health();
     this.side_.draw_stages();
+    this.people_.draw();
+    draw_edit(this.model_);
+    draw_swap(this.model_);
+    draw_question(this.model_);
     draw_person(this.model_, this.looks_, now_ms);
     this.draw_lost();
   }

@@ -36,6 +36,10 @@ export class Model {
   /** Looked at instead of now, s. */
   scrub_s: number | undefined;
   selected = -1; // performer
+  /** More than one: a range or a group, picked together. */
+  marked: readonly number[] = [];
+  /** Ids of people whose walks have changed and who have not been told. */
+  untold: readonly string[] = [];
   private switch_times_: number[] = [];
 
   take_show(show: Show, tracks: Tracks, centres: Float32Array): void {
@@ -46,6 +50,7 @@ export class Model {
     this.layers.clear();
     this.switch_times_ = show.switch_at.map((one) => one.time_s);
     if (this.selected >= show.performers.length) this.selected = -1;
+    this.marked = this.marked.filter((one) => one < show.performers.length);
   }
 
   take_state(state: State, now_ms: number): void {
@@ -63,6 +68,12 @@ export class Model {
     if (typeof told !== "object" || told === null) return { armed: true, stages: [] };
     const { scope, armed, stages } = told as { scope?: unknown; armed?: unknown; stages?: unknown };
     return { scope: typeof scope === "string" ? scope : undefined, armed: armed !== false, stages: Array.isArray(stages) ? stages : [] };
+  }
+
+  /** Somebody has said GO, or the run was taken up in the midst of the show. */
+  begun(): boolean {
+    const { state, show } = this;
+    return state !== undefined && (state.cue !== null || state.phase !== "stands" || state.position_s > (show?.cues[0]?.from_s ?? 0) + 1e-3);
   }
 
   leads(): boolean {

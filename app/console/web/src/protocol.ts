@@ -66,10 +66,29 @@ export interface State {
   reset: { state: string; from_s?: number; to_s?: number; at_s?: number };
   against?: unknown; // who bars people from walking
   gates?: unknown;
+  standby_notes?: string;
+  /** What a HOLD would do now; null: it is being judged. */
+  freeze?: { pairs: number; until_count: number | null; resume_pairs: number } | null;
+  edit?: Edit;
+  /** A node that is exchanged for a spare, step by step; null: none is. */
+  swap?: { node: string; step: string; text: string } | null;
+  most_because?: string;
+  /** Before a show has its buses: a lamp that somebody has to look at. */
+  question?: { text: string; cell: string } | null;
   switch: number;
   ready: boolean;
-  buses: { name: string; nodes: number; unconfirmed: number }[];
+  buses: { name: string; nodes: number; unconfirmed: number; trouble?: string }[];
   [more: string]: unknown; // what newer programs tell
+}
+
+/** What has changed and does not play yet, and who does not come. */
+export interface Edit {
+  state: string; // none, planning, wrong, waits, taking
+  text: string;
+  transitions: number;
+  people: number;
+  untold: number;
+  absent: { id: string; cover: string | null }[];
 }
 
 export interface BusHealth {
@@ -83,7 +102,6 @@ export interface BusHealth {
   boots: number;
   late_latches: number;
   worst_lateness_ms: number;
-  trouble: string;
 }
 
 export interface Alarm {

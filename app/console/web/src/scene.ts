@@ -38,6 +38,7 @@ export interface Shown {
 }
 
 const kLegible_px = 2.5; // of a pitch: ways nearer to each other are a grey carpet
+const kSlow_ms = 40; // a frame that takes more
 const kFullTurn_m = 1.75; // a person's height
 
 export class Scene {
@@ -64,6 +65,8 @@ export class Scene {
   private node_rows_ = 1;
   private layer_rows_ = 1;
   private last_frame_: WebGLSync | null = null;
+  private began_ms_ = 0; // of the frame that the GPU draws
+  private rests_until_ms_ = 0;
 
   constructor(canvas: HTMLCanvasElement, private palette_: Palette) {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
@@ -145,19 +148,25 @@ export class Scene {
     this.meter.bytes += whole.length;
   }
 
-  /** The GPU is not done with the last frame: another one would only make the page wait. */
-  busy(): boolean {
+  /**
+   * The GPU is not done with the last frame: another one would only make the page wait. One that is slow (a processor
+   * that draws) rests as long as it has drawn: the show's own threads may be on the same machine.
+   */
+  busy(now_ms: number): boolean {
     const gl = this.gl_;
-    if (!this.last_frame_) return false;
+    if (!this.last_frame_) return now_ms < this.rests_until_ms_;
     if (gl.getSyncParameter(this.last_frame_, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) return true;
     gl.deleteSync(this.last_frame_);
     this.last_frame_ = null;
-    return false;
+    const took_ms = now_ms - this.began_ms_;
+    this.rests_until_ms_ = took_ms > kSlow_ms ? now_ms + took_ms : 0;
+    return now_ms < this.rests_until_ms_;
   }
 
   /** @return whether everything that was taken is on the GPU; until then nothing of the floor is drawn */
-  draw(shown: Shown): boolean {
+  draw(shown: Shown, now_ms: number): boolean {
     const gl = this.gl_;
+    this.began_ms_ = now_ms;
     const ground = this.palette_.ground;
     gl.viewport(0, 0, shown.size_px.width, shown.size_px.height);
     gl.clearColor(ground[0], ground[1], ground[2], 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is looked at: picked on the stage, or found by name.
+// Who is looked at: picked on the stage, or found by name, number or group.
 
 import type { Found } from "./find";
 import type { Model } from "./model";
@@ -14,12 +14,20 @@ export class Selection {
 
   /** @param performer -1: nobody */
   take(performer: number): void {
-    const { show, selected } = this.model_;
-    this.model_.selected = performer;
-    if (!show) return;
-    for (const one of [selected, performer]) {
-      if (one >= 0) this.stage_()?.scene.mark_performer(one, colour_of(show, one), flags_of(show, one, one === performer));
-    }
+    this.take_all(performer >= 0 ? [performer] : []);
+  }
+
+  /** One is looked at, with her whole way; of many only where they are. */
+  take_all(performers: readonly number[]): void {
+    const { show, selected, marked } = this.model_;
+    const before = selected >= 0 ? [selected] : marked;
+    this.model_.selected = performers.length === 1 ? performers[0] : -1;
+    this.model_.marked = performers.length > 1 ? performers : [];
+    const scene = this.stage_()?.scene;
+    if (!show || !scene) return;
+    for (const one of before) scene.mark_performer(one, colour_of(show, one), flags_of(show, one, false));
+    for (const one of performers) scene.mark_performer(one, colour_of(show, one), flags_of(show, one, true));
+    this.stage_()?.redraw();
   }
 
   find(found: Found): void {

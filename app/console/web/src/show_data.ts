@@ -72,7 +72,8 @@ export function colour_of(show: Show, performer: number): number {
   return Math.min(kNoGroup, show.performers[performer]?.group ?? kNoGroup);
 }
 
-export function send_show(scene: Scene, show: Show, tracks: Tracks, centres: Float32Array, selected: number): void {
+/** @param picked who was picked */
+export function send_show(scene: Scene, show: Show, tracks: Tracks, centres: Float32Array, picked: readonly number[]): void {
   const { columns, rows, blocked, wings, grid } = show.stage;
   const cells = new Uint8Array(columns * rows);
   for (const cell of wings) cells[cell] = kWing;
@@ -85,9 +86,10 @@ export function send_show(scene: Scene, show: Show, tracks: Tracks, centres: Flo
     if (what !== null && what >= 0) lamps.push(what, kChannels * n + channel);
   }));
   const who = new Uint8Array(2 * show.performers.length);
+  const chosen = new Set(picked);
   for (let p = 0; p < show.performers.length; ++p) {
     who[2 * p] = colour_of(show, p);
-    who[2 * p + 1] = flags_of(show, p, p === selected);
+    who[2 * p + 1] = flags_of(show, p, chosen.has(p));
   }
   scene.take_show(show, centres, tracks, cells, new Uint32Array(lamps), who);
 }

@@ -7,11 +7,13 @@ import type { Model } from "./model";
 import { kNothing, kQuarantined, kRight, kSilent, kUnverified, type RunEvent } from "./protocol";
 import { is_word, say } from "./words";
 
+const kOfNodes = new Set(["roll-call", "plan-on-nodes", "looks"]);
 const kMostListed = 200;
 const kMostLogged = 500;
 /** What has a place of its own on the page; anything else that a state tells is listed by its name. */
 const kKnownFacts = new Set(["phase", "position_s", "rate", "section", "measure", "count", "cue", "standby", "goes_in_s", "ends_in_s", "tempo_percent",
-  "most_percent", "holds_at_end", "loop", "reset", "switch", "ready", "buses", "readiness", "time", "scope", "next_switch", "against"]);
+  "most_percent", "most_because", "holds_at_end", "loop", "reset", "switch", "ready", "buses", "readiness", "time", "scope", "next_switch", "against",
+  "standby_notes", "freeze", "muted", "edit", "swap", "question"]);
 
 function time_of(unix_ms: number): string {
   return new Date(unix_ms).toLocaleTimeString("en-GB");
@@ -34,21 +36,30 @@ export class SidePanels {
 
   draw_alarms(): void {
     const open = this.model_.alarms.filter((alarm) => alarm.acknowledged_by === null);
-    by_id("alarms").replaceChildren(...open.slice(-4).map((alarm) => {
+    // One line for the newest: what leads the show must not be pushed out of sight.
+    by_id("alarms").replaceChildren(...open.slice(-1).map((alarm) => {
       const row = make("div");
       const seen = make("button", say("seen"));
       seen.addEventListener("click", () => this.acknowledge_(alarm.n));
       row.append(make("b", `⚠ ${time_of(alarm.unix_ms)}`), make("span", alarm.text), seen);
+      if (open.length === 1) return row;
+      const all = make("button", say("all_seen", { n: open.length }));
+      all.addEventListener("click", () => open.forEach((one) => this.acknowledge_(one.n)));
+      row.append(all);
       return row;
     }));
-    if (open.length > 4) by_id("alarms").append(make("div", say("and_more", { n: open.length - 4 })));
   }
 
+  /** All of them before the show has begun; then what is not as it should be. */
   draw_stages(): void {
-    const { stages, armed } = this.model_.readiness();
+    const { stages: all, armed } = this.model_.readiness();
+    const done = (state: string) => state === "SUCCESS" || state === "SKIPPED";
+    const begun = armed && this.model_.begun();
+    // What nodes answer is told by health and alarms from then on.
+    const stages = begun ? all.filter((stage) => !done(String(stage.state)) && !kOfNodes.has(String(stage.name))) : all;
     const part = by_id("stages");
     show_if(part, stages.length > 0);
-    const now = JSON.stringify([stages, armed]);
+    const now = JSON.stringify([stages, armed, this.model_.role, document.documentElement.lang]);
     if (part.dataset.now === now) return;
     part.dataset.now = now;
     const signs: Record<string, string> = { success: "✓", error: "✗", warning: "!", waiting: "…", next: "›", skipped: "–", off: "·" };
@@ -57,10 +68,15 @@ export class SidePanels {
       const one = make("span", `${signs[state] ?? "?"} ${stage.name ?? ""}: ${String(stage.state ?? "")}${stage.text && state !== "success" ? ` (${stage.text})` : ""}`);
       if (/^[a-z]+$/.test(state)) one.className = state;
       one.setAttribute("role", "listitem");
+      if (state !== "error" || this.model_.role === "view") return one;
+      const answer = make("button", say("override"));
+      answer.addEventListener("click", () => this.order_(`override ${stage.name ?? ""}`));
+      one.append(answer);
       return one;
     }));
-    if (armed || stages.length === 0) return;
+    if (armed || stages.length === 0 || this.model_.role === "view") return;
     const arm = make("button", say("arm"));
+    arm.disabled = all.some((stage) => !["SUCCESS", "SKIPPED", "WARNING"].includes(String(stage.state)));
     arm.addEventListener("click", () => this.order_("arm"));
     part.append(arm);
   }
@@ -71,7 +87,7 @@ export class SidePanels {
     const figures = this.model_.nodes.figures();
     const bad = figures.wrong + figures.silent + figures.quarantined;
     const words = by_id("floor_words");
-    words.classList.toggle("wrong", bad > 0);
+    words.classList.toggle("wrong", bad > 0 && state.ready);
     set_text(words, this.floor_words(bad, figures.unverified));
     this.draw_buses();
     this.draw_wrong_nodes();
@@ -87,6 +103,7 @@ export class SidePanels {
   private floor_words(bad: number, unverified: number): string {
     const { show, nodes } = this.model_;
     if (!show || show.rig.length === 0) return say("no_rig");
+    if (this.model_.state?.ready === false) return say("being_asked");
     if (bad === 0) return unverified > 0 ? say("unverified", { n: unverified }) : say("all_right", { n: nodes.many });
     let markers = 0;
     const names: string[] = [];
@@ -103,7 +120,7 @@ export class SidePanels {
     const { state, health } = this.model_;
     const rows: string[][] = (state?.buses ?? []).map((bus) => {
       const more = health.find((one) => one.name === bus.name);
-      return [bus.name, `${bus.nodes - bus.unconfirmed}/${bus.nodes}`, more ? `${more.worst_lateness_ms.toFixed(1)} ms` : "", more ? String(more.retries) : "", more?.trouble ?? ""];
+      return [bus.name, `${bus.nodes - bus.unconfirmed}/${bus.nodes}`, more ? `${more.worst_lateness_ms.toFixed(1)} ms` : "", more ? String(more.retries) : "", bus.trouble ?? ""];
     });
     const body = by_id("buses");
     const now = JSON.stringify(rows);
@@ -112,7 +129,7 @@ export class SidePanels {
     body.replaceChildren(...rows.flatMap(([name, right, late, retries, trouble]) => {
       const row = make("tr");
       const [a, b] = right.split("/");
-      if (a !== b || trouble) row.className = "wrong";
+      if ((a !== b && state?.ready !== false) || trouble) row.className = "wrong";
       row.append(make("td", (row.className ? "☒ " : "") + name), make("td", right), make("td", late), make("td", retries));
       if (!trouble) return [row];
       const more = make("tr", "", "wrong");
@@ -125,22 +142,30 @@ export class SidePanels {
 
   private draw_wrong_nodes(): void {
     const { show, nodes } = this.model_;
-    if (!show) return;
-    const lines: string[] = [];
+    if (!show || this.model_.state?.ready === false) return;
+    const lines: { name: string; text: string }[] = [];
     nodes.flags.forEach((flags, node) => {
       const bad = (flags & (kSilent | kQuarantined)) !== 0 || (flags & (kRight | kUnverified)) === 0;
       if (!bad) return;
       const one = show.rig[node];
       const how = say(flags & kQuarantined ? "node_quarantined" : flags & kSilent ? "node_silent" : "node_wrong");
       const last = nodes.index[node] === kNothing ? "–" : nodes.index[node];
-      lines.push(`${one.name} · ${show.buses[one.bus]?.name ?? "?"} ${one.address} · ${how} · ${last} · ${say("node_markers", { n: one.channels.filter((c) => c !== null).length })}`);
+      lines.push({ name: one.name, text: `${show.buses[one.bus]?.name ?? "?"} ${one.address} · ${how} · ${say("node_last", { last })} · ${say("node_markers", { n: one.channels.filter((c) => c !== null).length })}` });
     });
     show_if(by_id("wrong_title"), lines.length > 0);
     const list = by_id("wrong_nodes");
-    const now = lines.join("\n");
+    const now = JSON.stringify([lines, this.model_.role]);
     if (list.dataset.now === now) return;
     list.dataset.now = now;
-    list.replaceChildren(...lines.slice(0, kMostListed).map((line) => make("li", line)));
+    list.replaceChildren(...lines.slice(0, kMostListed).map(({ name, text }) => {
+      const row = make("li");
+      row.append(make("b", name), make("span", text));
+      if (this.model_.role === "view") return row;
+      const swap = make("button", say("swap"));
+      swap.addEventListener("click", () => this.order_(`swap ${name}`));
+      row.append(swap);
+      return row;
+    }));
     if (lines.length > kMostListed) list.append(make("li", say("and_more", { n: lines.length - kMostListed })));
   }
 

@@ -140,11 +140,16 @@ export class StageView {
 
   private resize(): void {
     this.camera.size = { width: Math.max(1, this.floor_.clientWidth), height: Math.max(1, this.floor_.clientHeight) };
-    for (const canvas of [this.floor_, this.labels_]) {
-      canvas.width = Math.round(this.camera.size.width * devicePixelRatio);
-      canvas.height = Math.round(this.camera.size.height * devicePixelRatio);
-    }
+    this.fit(this.labels_);
     this.redraw();
+  }
+
+  /** Empties it: only just before it is drawn. Until then what it has is stretched. */
+  private fit(canvas: HTMLCanvasElement): void {
+    const width = Math.round(this.camera.size.width * devicePixelRatio);
+    const height = Math.round(this.camera.size.height * devicePixelRatio);
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
   }
 
   private down(event: PointerEvent): void {
@@ -191,8 +196,8 @@ export class StageView {
     return Math.round(this.model_.shown_s(now_ms) * 1000);
   }
 
-  /** @param planned layer of the looks of the instant that is looked at; -1: now */
-  draw(now_ms: number, planned: number): void {
+  /** @param planned layer of the looks of the instant that is looked at; -1: now  @param blinks some lamp does */
+  draw(now_ms: number, planned: number, blinks: boolean): void {
     const { model_: model, camera } = this;
     const view = camera.view();
     const shown_s = model.shown_s(now_ms);
@@ -200,10 +205,11 @@ export class StageView {
     const time_ms = resets ? Math.round(model.way_clock.at(now_ms) * 1000) : this.shown_ms(now_ms);
     const next_s = model.next_formation_s(resets ? Number(model.state?.reset.to_s ?? shown_s) : shown_s);
     // What blinks needs frames; what stands still does not.
-    const blink = this.choices.lamps ? Math.floor(now_ms / 100) : 0;
+    const blink = this.choices.lamps && blinks ? Math.floor(now_ms / 100) : 0;
     const drawn = [time_ms, next_s, blink, planned, model.selected, resets, view.matrix.join(), Object.values(this.choices).join()].join("|");
-    if (drawn !== this.drawn_ && !this.scene.busy()) {
+    if (drawn !== this.drawn_ && !this.scene.busy(now_ms)) {
       this.cost.confirmed_bytes += this.scene.meter.take().bytes;
+      this.fit(this.floor_);
       const whole = this.scene.draw({
         view,
         size_px: { width: this.floor_.width, height: this.floor_.height },
@@ -217,7 +223,7 @@ export class StageView {
         selected: model.selected,
         seconds: (now_ms / 1000) % 3600,
         uses_way: resets,
-      });
+      }, now_ms);
       this.drawn_ = whole ? drawn : "";
       this.count_cost();
     }

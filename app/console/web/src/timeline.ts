@@ -64,6 +64,7 @@ export class Timeline {
     this.draw_time(now_ms);
     set_text(by_id("tempo"), `${state.tempo_percent} %`);
     set_text(by_id("most"), say("at_most", { most: state.most_percent }));
+    set_flag(by_id("most"), "title", state.most_because || null);
     set_flag(this.handle_, "aria-valuetext", `${clock_text(shown_s)}, ${say("count")} ${Math.floor(count)}`);
     show_if(by_id("scrubbed"), scrub_s !== undefined);
     if (scrub_s !== undefined) set_text(by_id("scrubbed_at"), `${clock_text(scrub_s)}, ${say("count")} ${count_text(count)}.`);
