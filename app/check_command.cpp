@@ -12,9 +12,9 @@
 #include "app/load.hpp"
 #include "app/plan_step.hpp"
 #include "app/plan_summary.hpp"
+#include "app/readiness/readiness.hpp"
 #include "app/simulated_buses.hpp"
 #include "app/supply_figures.hpp"
-#include "app/readiness/readiness.hpp"
 #include "app/wire_check.hpp"
 
 namespace footlight::app {

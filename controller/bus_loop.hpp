@@ -101,7 +101,7 @@ class BusLoop final : private drivers::EventSink {
     bool silent = false;       ///< it has not answered what it was asked last
     bool quarantined = false;  ///< asked only from time to time
     Keeps keeps = Keeps::unknown;
-    std::uint8_t boots = 0;    ///< restarts that were noticed, modulo 256
+    std::uint8_t boots = 0;  ///< restarts that were noticed, modulo 256
   };
   [[nodiscard]] std::size_t nodes() const noexcept { return nodes_.size(); }
   /// @param position of the node on this bus, < nodes()

@@ -59,7 +59,12 @@ struct NodesBy {
 
 ReadinessSurface::ReadinessSurface(Readiness& readiness, const Rig& rig, const NodeBoard& board,
                                    const BusHealth& health, RunDesk& desk, bool arms)
-    : readiness_(readiness), rig_(rig), board_(board), health_(health), unfenced_(unfenced_text(rig.buses)), arms_(arms) {
+    : readiness_(readiness),
+      rig_(rig),
+      board_(board),
+      health_(health),
+      unfenced_(unfenced_text(rig.buses)),
+      arms_(arms) {
   for (const Node& node : rig.nodes) markers_ += node.channels.size();
   desk.bar(controller::kNotReady, readiness.refuses_go());
   desk.add([this, &readiness](DeskView& view) {
@@ -160,7 +165,8 @@ void ReadinessSurface::judge_checks(std::size_t unproved, std::size_t unverified
   } else if (with.unknown > 0 && !readiness_.armed()) {
     readiness_.tell(Stage::plan_on_nodes, State::waiting, std::move(text));
   } else {
-    readiness_.tell(Stage::plan_on_nodes, unproved + unverified > 0 || untold ? State::warning : State::success, std::move(text));
+    readiness_.tell(Stage::plan_on_nodes, unproved + unverified > 0 || untold ? State::warning : State::success,
+                    std::move(text));
   }
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 11> kKinds{"begun", "start",   "end",   "hold", "goes-on", "reset",
-                                                  "order", "refused", "alarm", "note", "ended"};
+constexpr std::array<std::string_view, 12> kKinds{"begun", "start",   "end",   "hold", "goes-on", "reset",
+                                                  "order", "refused", "alarm", "note", "absent",  "ended"};
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct RehearsalEntry {
     refused,  ///< one that was not
     alarm,
     note,
-    ended,  ///< the program, as it should
+    absent,  ///< somebody is, by the desk's word; `text` is her name
+    ended,   ///< the program, as it should
   };
   Kind kind = Kind::order;
   double since_1970_s = 0;  ///< wall clock

@@ -104,11 +104,22 @@ std::string RehearsalLog::trouble() const {
 void RehearsalLog::look(const DeskView& view, RunDesk& desk) {
   if (seen_) follow(*seen_, view.show);
   seen_ = view.show;
+  follow_absent(view.edit);
   if (trouble_told_) return;
   const std::string why = trouble();
   if (why.empty()) return;
   trouble_told_ = true;
   desk.tell({RunEvent::Kind::note, why + " (notes and the report stay in memory until the end)"});
+}
+
+/// Who comes after all was absent all the same.
+void RehearsalLog::follow_absent(const EditView& edit) {
+  for (const EditView::Absent& one : edit.absent) {
+    if (!absent_.insert(one.id).second) continue;
+    const auto known = std::ranges::find(show_.performers, one.id, &Performer::id);
+    happened(Kind::absent, seen_->position, seen_->active >= 0 ? seen_->active : seen_->standby,
+             known == show_.performers.end() ? one.id : known->name);
+  }
 }
 
 void RehearsalLog::follow(const ShowState& before, const ShowState& now) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ class RehearsalLog final : public Surface {
   [[nodiscard]] RunDesk::Verb notes_verb() const;
 
  private:
+  void follow_absent(const EditView& edit);
   void follow(const ShowState& before, const ShowState& now);
   void happened(RehearsalEntry::Kind kind, Instant position, int cue, std::string text = {});
   [[nodiscard]] std::string number_of(int cue) const;
@@ -63,7 +65,8 @@ class RehearsalLog final : public Surface {
   bool trouble_told_ = false;
   std::vector<RehearsalEntry> entries_;
   std::optional<ShowState> seen_;
-  std::string last_who_;  ///< of the last order that was carried out, until something comes of it
+  std::set<std::string> absent_;  ///< ids that are written down
+  std::string last_who_;          ///< of the last order that was carried out, until something comes of it
 };
 
 /// "count 17, cue 2, Ana: too late"

@@ -141,6 +141,9 @@ void count(RehearsalReport& report, const RehearsalEntry& entry, Running& runnin
     case Kind::note:
       (cue != nullptr ? cue->notes : report.notes).push_back(entry);
       return;
+    case Kind::absent:
+      if (std::ranges::find(report.absent, entry.text) == report.absent.end()) report.absent.push_back(entry.text);
+      return;
     case Kind::order:
     case Kind::ended:
       return;
@@ -162,11 +165,11 @@ RehearsalReport report_of(const Show& show, const std::vector<controller::CuePla
     report.began_since_1970_s = entries.front().since_1970_s;
     report.lasted_s = std::max(0.0, entries.back().since_1970_s - entries.front().since_1970_s);
   }
-  Running running;
-  for (const RehearsalEntry& entry : entries) count(report, entry, running);
   for (const Performer& performer : show.performers) {
     if (performer.absent) report.absent.push_back(performer.name);
   }
+  Running running;
+  for (const RehearsalEntry& entry : entries) count(report, entry, running);
   if (live == nullptr) return report;
   report.late_latches = live->late_latches;
   report.worst_latch_ms = 0;

@@ -98,6 +98,19 @@ TEST_F(RehearsalLogTest, WritesDownWhatTheShowDidAndWhatWasSaid) {
   EXPECT_EQ(all.absent, std::vector<std::string>{"Eva <1>"});
 }
 
+TEST_F(RehearsalLogTest, WhoIsAbsentByTheDesksWordIsInTheReportAlsoAfterAKill) {
+  const std::string ana = small_.show.performers[0].id;
+  view_.edit.absent = {{ana, ""}};
+  look();
+  view_.edit.absent = {{ana, "repaired"}};
+  look();
+  view_.edit.absent.clear();  // she has come
+  look();
+  EXPECT_EQ(report().absent, (std::vector<std::string>{"Eva <1>", "Ana"}));
+  begin();
+  EXPECT_EQ(report().absent, (std::vector<std::string>{"Eva <1>", "Ana"}));
+}
+
 TEST_F(RehearsalLogTest, AProgramThatIsKilledLosesNothingThatItHasSaid) {
   rehearse();
   EXPECT_TRUE(log_->flush());
