@@ -85,6 +85,7 @@ class Surviving {
   void take_up(const CutOff& cut, AfterDeath policy, RunDesk& desk, LiveOptions& live);
   /// Another plan is led from now on. @param digest config::digest_of
   void plan_is(const std::string& digest);
+  [[nodiscard]] Journal& journal() { return journal_; }
 
  private:
   std::string plan_;
