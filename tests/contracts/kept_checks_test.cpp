@@ -74,7 +74,9 @@ std::vector<Keeps> told(const Rig& wired, const Rig& rig, const std::string& fau
     simulated.advance_to(std::max(now + microseconds(100), std::min(wish, simulated.next_event())));
   }
   EXPECT_EQ(loop.keeps_checks(), kind != BusKind::dmx);
-  if (faults.empty()) EXPECT_EQ(loop.counters().quarantines, 0U);
+  if (faults.empty()) {
+    EXPECT_EQ(loop.counters().quarantines, 0U);
+  }
   EXPECT_TRUE(loop.settled());
   std::vector<Keeps> out;
   for (std::size_t n = 0; n < loop.nodes(); ++n) out.push_back(loop.standing(n).keeps);
