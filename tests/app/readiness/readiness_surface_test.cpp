@@ -180,7 +180,7 @@ TEST_F(ReadinessSurfaceTest, StagesSayWhatIsNotReadyWhileAWireIsDownAndComeBack)
 TEST_F(ReadinessSurfaceTest, ANodeThatAnswersAndDoesNotShowWhatItShouldIsNoProof) {
   open(Scope::rehearsal);
   (void)look();
-  board_.put(1, {0, 0});
+  board_.put(1, {0, NodeBoard::kSameChecks});
   for (const double at_s : {1.0, 3.4, 3.6}) {
     view_.now = instant_at(at_s);
     (void)look();
