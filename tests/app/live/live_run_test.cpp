@@ -79,7 +79,7 @@ TEST_F(LiveRunTest, EveryMarkerShowsTheLastSwitchInTheEnd) {
   }
   for (std::size_t n = 0; n < board.size(); ++n) {
     EXPECT_EQ(board.at(n).shown, report->switches - 1) << n;
-    EXPECT_EQ(board.at(n).flags, NodeBoard::kRight) << n;
+    EXPECT_EQ(board.at(n).flags, NodeBoard::kRight | NodeBoard::kSameChecks) << n;
   }
   stop_serving();
   for (std::size_t n = 0; n < small_.rig.nodes.size(); ++n) {
@@ -115,8 +115,9 @@ TEST_F(LiveRunTest, WiresThatAreGoneAreToldWithTheirReasonAndNothingOnThemIsConf
   EXPECT_EQ(report->unconfirmed, small_.rig.nodes.size());
   for (const BusView& bus : last) EXPECT_EQ(bus.load, std::nullopt) << "nobody has reckoned it";
   EXPECT_EQ(last[0].trouble.empty(), false);
-  for (std::size_t n = 0; n < board.size(); ++n)
-    EXPECT_EQ(board.at(n).flags & ~NodeBoard::kQuarantined, NodeBoard::kSilent);
+  for (std::size_t n = 0; n < board.size(); ++n) {
+    EXPECT_EQ(board.at(n).flags & (NodeBoard::kRight | NodeBoard::kSilent), NodeBoard::kSilent) << n;
+  }
 }
 
 TEST_F(LiveRunTest, TheHeartGoesOnWhileTheDeskIsStuckAndSaysWhatTheCueThreadSays) {

@@ -167,6 +167,7 @@ class LeadPortTest : public ::testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     understudy.join();
+    look();  // what was told last
     return std::move(*outcome);
   }
 
