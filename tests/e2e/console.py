@@ -173,7 +173,7 @@ def make_cases(Stage, footlight, program):
             self.assertEqual((show["title"], len(show["performers"]), show["nodes"]), ("Twelve", 12, 12))
             self.assertGreater(show["cues"][1]["most_percent"], 100)
             status, headers, plan = self.get("/api/plan.bin")
-            self.assertEqual((plan[:4], struct.unpack_from("<4I", plan, 4)[:3]), (b"FLPM", (1, 1, 12)))
+            self.assertEqual((plan[:4], struct.unpack_from("<4I", plan, 4)[:3]), (b"FLPM", (1, show["epoch"], 12)))
             self.play_to_the_end(page)
             wait_for(lambda: set(page.nodes().values()) == {(page.state["switch"], 1)}, "every node right, at the switch that is lit")
             self.assertEqual(len(page.nodes()), 12)
