@@ -92,7 +92,7 @@ class Page:
         return wait_for(lambda: all(self.state.get(key) == value for key, value in wanted.items()), f"{told}: {wanted}, not {self.state}", 60)
 
     def nodes(self):
-        """By node: (switch, flags), as a page has them."""
+        """By node: (switch, flags of what it shows), as a page has them."""
         known = {}
         for frame in list(self.frames):
             assert frame[0] == 1 and len(frame) == 8 + 16 * struct.unpack_from("<I", frame, 4)[0], frame
@@ -100,7 +100,7 @@ class Page:
                 known = {}
             for at in range(8, len(frame), 16):
                 first, count, shown, flags = struct.unpack_from("<4I", frame, at)
-                known.update({n: (shown, flags) for n in range(first, first + count)})
+                known.update({n: (shown, flags & 15) for n in range(first, first + count)})
         return known
 
 
