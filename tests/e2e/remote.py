@@ -327,7 +327,7 @@ def make_cases(Stage, footlight, program, Desk, SHOW):
             wait_for(lambda: any("the show is not ready" in text for text in desk.answers()), "the refused GO")
             desk.say("quit")
             desk.process.wait(20)
-            for bus in ("left", "right"):
+            for bus in ("left", "middle", "right"):
                 on = ["devices", "patch", bus, "--show", self.show, "--transport-map", self.map, "--json"]
                 told, _ = footlight(*on, status=4)
                 self.assertEqual({n["is"] for n in json.loads(told)["nodes"]}, {"other"})
