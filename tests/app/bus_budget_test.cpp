@@ -181,7 +181,9 @@ TEST(BusBudget, OfAShowThatIsCheckedHasTheFramesByWhichARunLeads) {
       const BusNeed& plain = wire.needs()[i];
       EXPECT_EQ(checked[i].heartbeats, plain.heartbeats);
       EXPECT_EQ(checked[i].preloads, plain.preloads);
-      if (plain.heartbeats > 0) EXPECT_GT(checked[i].beating, plain.beating) << "LEAD goes with heartbeats";
+      if (plain.heartbeats > 0) {
+        EXPECT_GT(checked[i].beating, plain.beating) << "LEAD goes with heartbeats";
+      }
     }
   }
 }
