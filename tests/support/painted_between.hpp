@@ -88,11 +88,11 @@ inline PaintedScene painted_between(const MotionTask& task, bool strokes, const 
     groups[task.to_group[i]].end.push_back(grid.nearest(task.to[i]));
   }
   // From the left to the right: who is in front in the one shape is in front in the other.
-  const auto ordered = [&](std::vector<CellIndex>& cells) {
+  const auto ordered = [&](std::vector<CellIndex>& line) {
     std::vector<Point> at;
     const auto across = [&](CellIndex cell) { return std::pair(grid.centre(cell).x, grid.centre(cell).y); };
-    std::sort(cells.begin(), cells.end(), [&](CellIndex a, CellIndex c) { return across(a) < across(c); });
-    for (const CellIndex cell : cells) at.push_back(grid.centre(cell));
+    std::sort(line.begin(), line.end(), [&](CellIndex a, CellIndex c) { return across(a) < across(c); });
+    for (const CellIndex cell : line) at.push_back(grid.centre(cell));
     return at;
   };
   for (auto& [group, ends] : groups) {
